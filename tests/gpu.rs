@@ -21,8 +21,8 @@ fn run(folder: &Path, args: &[&str], variable: Option<(&str, &str)>) -> (String,
 
 /// Renders a small image on a device, and returns its bytes, and the complaints.
 fn image(folder: &Path, device: &str, variable: Option<(&str, &str)>) -> (Vec<u8>, String) {
-    let args =
-        ["render", "--size", "64x36", "--spp", "4", "--quiet", "--device", device, "-o", "a.pfm"];
+    let occlusion = ["render", "--size", "64x36", "--spp", "4", "--quiet", "--integrator", "ao"];
+    let args = [&occlusion[..], &["--device", device, "-o", "a.pfm"]].concat();
     let (_, complaints) = run(folder, &args, variable);
     (std::fs::read(folder.join("a.pfm")).expect("an image"), complaints)
 }
@@ -68,8 +68,14 @@ fn what_the_device_does_is_told() {
     );
     let (.., notes) = render("gpu", &["--integrator", "ao", "--verbose"]);
     assert!(notes.contains("follows paths from the camera to their ends"), "{notes}");
-    let (.., notes) = render("gpu", &["--verbose"]);
-    assert!(notes.contains("the processor shades, for caustics are sampled"), "{notes}");
+    for (more, why) in [
+        ([].as_slice(), "caustics are sampled"),
+        (&["--no-caustics"], "the scene has glass"),
+        (&["--integrator", "ao", "--slice", "x>0"], "the scene has slices"),
+    ] {
+        let (.., notes) = render("gpu", more);
+        assert!(notes.contains("--device gpu has no effect") && notes.contains(why), "{notes}");
+    }
 }
 
 #[test]

@@ -110,13 +110,13 @@ pub(super) enum Builder {
     Morton,
 }
 
-/// What traces rays.
+/// What follows paths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum Device {
-    /// The faster one: so far the processor, since shading stays there
+    /// The processor, so far
     Auto,
     /// The processor
     Cpu,
-    /// A GPU traces rays, and the processor does the rest; needs a program that was built with it
+    /// A GPU where it can, with the processor's image; needs a program that was built with it
     Gpu,
 }

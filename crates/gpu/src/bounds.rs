@@ -4,6 +4,7 @@
 //! order, and numbers that are too small become 0 or not. What the kernel calls certain must hold all the same:
 //! docs/gpu.md has the proof. Names are those of the kernel.
 
+use crate::nodes::Grid;
 use spherule_core::internals::intersect::confirm;
 use spherule_core::internals::random::Random;
 use spherule_core::internals::ray::{ExactRay, MISS};
@@ -15,7 +16,7 @@ const K: f32 = 20.0 * E;
 const TINY: f32 = 1.0 / (1_u64 << 60) as f32;
 const TINY_SQUARE: f32 = 1.0 / (1_u128 << 100) as f32;
 const SLACK: f32 = 16.0 * E;
-const SOONER: f32 = 1.0 - 16.0 * E;
+const STEPS: f32 = 256.0;
 const LEAST: f32 = TINY_SQUARE;
 
 /// The way in which a device rounds.
@@ -190,6 +191,16 @@ enum Verdict {
     Hit([f32; 2]),
 }
 
+fn is_near(machine: &mut Machine, ray: &Ray, center: V, radius: f32) -> bool {
+    let to_center = [0, 1, 2].map(|i| machine.sub(center[i], ray.origin[i]));
+    let along = machine.dot(to_center, ray.direction);
+    let middle = machine.mul(along, ray.inverse_length2);
+    let perpendicular = [0, 1, 2].map(|i| machine.mul_add(-middle, ray.direction[i], to_center[i]));
+    let slack = machine.mul(middle.abs(), K);
+    let reach = machine.sum(vec![[radius, 1.0 + K], [slack, ray.length], [TINY, 1.0]]);
+    machine.dot(perpendicular, perpendicular) <= machine.mul(reach, reach)
+}
+
 fn test_sphere(machine: &mut Machine, ray: &Ray, center: V, radius: f32) -> Verdict {
     let to_center = [0, 1, 2].map(|i| machine.sub(center[i], ray.origin[i]));
     let along = machine.dot(to_center, ray.direction);
@@ -327,7 +338,10 @@ fn what_is_certain_on_the_worst_device_is_true_on_all_stress_regimes() {
                         "{} {:?} {exact:?} {center:?} {radius}",
                         regime.name, machine.rounding
                     );
-                    counts.check(verdict, truth(&exact, center, radius), &what);
+                    let truth = truth(&exact, center, radius);
+                    let near = is_near(&mut machine, &ray, center, radius);
+                    assert!(near || truth.is_none(), "{what}");
+                    counts.check(verdict, truth, &what);
                 }
             }
         }
@@ -339,7 +353,7 @@ fn what_is_certain_on_the_worst_device_is_true_on_all_stress_regimes() {
 fn what_is_certain_on_the_worst_device_is_true_at_tangents() {
     let mut machine = Machine { rounding: Rounding::Any, random: Random::new(6) };
     let mut random = Random::new(2);
-    let mut counts = Counts::default();
+    let (mut counts, mut far) = (Counts::default(), 0);
     for round in 0..400_000 {
         let origin = (random.direction() * random.decades([-3.0, 5.0])).as_vec3();
         let center = random.in_cube().as_vec3();
@@ -358,35 +372,51 @@ fn what_is_certain_on_the_worst_device_is_true_at_tangents() {
         let verdict = test_sphere(&mut machine, &ray, center.to_array(), radius);
         let exact = ExactRay::new(origin, direction, own != MISS);
         let what = format!("{:?} {exact:?} {center:?} {radius}", machine.rounding);
-        counts.check(verdict, truth(&exact, center.to_array(), radius), &what);
+        let truth = truth(&exact, center.to_array(), radius);
+        let near = is_near(&mut machine, &ray, center.to_array(), radius);
+        assert!(near || truth.is_none(), "{what}");
+        far += u32::from(!near);
+        counts.check(verdict, truth, &what);
     }
+    assert!(far > 10_000, "{far}");
     assert!(counts.missed > 10_000 && counts.unknown > 10_000 && counts.hit > 10_000, "{counts:?}");
 }
 
-/// The kernel's test of one box: whether the ray may enter it before `t_far`.
+/// The kernel's test of a box on a grid, by axis: whether the ray may enter it before `t_far`.
 fn enters(
     machine: &mut Machine,
     origin: V,
     direction: V,
-    planes: [[f32; 2]; 3],
+    boxes: [(Grid, [u8; 2]); 3],
     t_far: f32,
 ) -> bool {
     let (mut near, mut far) = (0.0_f32, t_far);
     for axis in 0..3 {
+        let (grid, steps) = boxes[axis];
         let d = direction[axis];
         let kept =
             if d.abs() < LEAST { LEAST.copysign(if d < 0.0 { -1.0 } else { 1.0 }) } else { d };
         let inverse = machine.inverse(kept);
-        let shift = machine.mul(origin[axis], inverse);
-        let term = [
-            machine.sum(vec![[-1.0, shift], [-SLACK, shift.abs()]]),
-            machine.sum(vec![[-1.0, shift], [SLACK, shift.abs()]]),
-        ];
+        let step = machine.mul(f32::from_bits(((grid.exponent + 127) as u32) << 23), inverse);
+        let to_corner = machine.sub(grid.corner, origin[axis]);
+        let width = machine.mul(step.abs(), STEPS);
         let side = usize::from(kept < 0.0);
-        near = near.max(machine.mul_add(planes[axis][side], inverse, term[0]));
-        far = far.min(machine.mul_add(planes[axis][1 - side], inverse, term[1]));
+        // The sum in any order, with the quotient taken of each term or of the sum.
+        let mut plane = |steps: u8, sign: f32| {
+            let base = machine.mul(to_corner, inverse);
+            let slack = machine.mul_add(base.abs(), SLACK, SLACK * width);
+            let mut terms = vec![[f32::from(steps), step], [sign, slack]];
+            if machine.random.coin() {
+                terms.push([to_corner, inverse]);
+            } else {
+                terms.push([base, 1.0]);
+            }
+            machine.sum(terms)
+        };
+        near = near.max(plane(steps[side], -1.0));
+        far = far.min(plane(steps[1 - side], 1.0));
     }
-    machine.mul(near, SOONER) <= far
+    near <= far
 }
 
 #[test]
@@ -414,24 +444,36 @@ fn no_box_that_a_ray_enters_is_left_out_on_the_worst_device() {
         }
         let at = origin.as_dvec3() + direction.as_dvec3() * t;
         // A box that the ray touches in a corner, or that is flat.
-        let planes = [0, 1, 2].map(|axis| {
+        let boxes = [0, 1, 2].map(|axis| {
             // What double precision may be off, and the margin.
             let error =
                 MARGIN + 4.0 * f64::EPSILON * (f64::from(origin[axis].abs()) + at[axis].abs());
             let low = ((at[axis] - error) as f32).next_down();
             let high = ((at[axis] + error) as f32).next_up();
             let wide = random.decades([-8.0, -1.0]) as f32;
-            match random.index(3) {
+            let own = match random.index(3) {
                 0 => [low, high],
                 1 => [low, high + wide],
                 _ => [low - wide, high],
-            }
+            };
+            // Other children widen the grid.
+            let beside = |x: f32, sign: f32, random: &mut Random| {
+                let by = random.decades([-8.0, 0.0]) as f32;
+                if random.coin() { x } else { x + sign * by }
+            };
+            let other = [beside(own[0], -1.0, &mut random), beside(own[1], 1.0, &mut random)];
+            let sides = [0, 1].map(|side| [own[side], other[side], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+            let grid = Grid::about(&sides, [0, 1, 2, 3, 4, 5, 6, 7].map(|child| child < 2));
+            let steps = grid.steps(own);
+            assert!(grid.plane(steps[0]) <= f64::from(own[0]), "{grid:?} {own:?}");
+            assert!(grid.plane(steps[1]) >= f64::from(own[1]), "{grid:?} {own:?}");
+            (grid, steps)
         });
         let t_far = (t as f32).next_up();
-        let entered = enters(&mut machine, origin.to_array(), direction.to_array(), planes, t_far);
-        assert!(entered, "{:?} {origin:?} {direction:?} {planes:?} {t}", machine.rounding);
+        let entered = enters(&mut machine, origin.to_array(), direction.to_array(), boxes, t_far);
+        assert!(entered, "{:?} {origin:?} {direction:?} {boxes:?} {t}", machine.rounding);
         // Far beside it, none.
-        let aside = planes.map(|[low, high]| [low + 9.0, high + 9.0]);
+        let aside = boxes.map(|(grid, steps)| (Grid { corner: grid.corner + 9.0, ..grid }, steps));
         refused +=
             u32::from(!enters(&mut machine, origin.to_array(), direction.to_array(), aside, t_far));
     }

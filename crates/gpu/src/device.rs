@@ -13,6 +13,12 @@ const PATIENCE: Duration = Duration::from_secs(120);
 const STORAGE_BUFFERS: u32 = 8;
 const PATH_BUFFERS: u32 = 17;
 
+/// What kernels of paths need beside: double precision, and its bits as integers.
+const FOR_PATHS: wgpu::Features = wgpu::Features::SHADER_F64.union(wgpu::Features::SHADER_INT64);
+
+/// A clock.
+const FOR_MEASUREMENTS: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY;
+
 /// An adapter: a GPU as a driver offers it, or a processor that a driver makes one of.
 #[derive(Clone, Debug)]
 pub struct AdapterSummary {
@@ -147,8 +153,7 @@ impl Device {
         }
         let descriptor = wgpu::DeviceDescriptor {
             required_limits: adapter.limits(),
-            // Only paths need double precision.
-            required_features: adapter.features() & wgpu::Features::SHADER_F64,
+            required_features: adapter.features() & (FOR_PATHS | FOR_MEASUREMENTS),
             ..wgpu::DeviceDescriptor::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
@@ -281,9 +286,9 @@ impl Device {
         place.get_or_init(|| kernel.compile(self)).as_ref().map_err(Clone::clone)
     }
 
-    /// Returns whether kernels may use double precision.
+    /// Returns whether kernels may use double precision, and its bits.
     pub(crate) fn has_doubles(&self) -> bool {
-        self.handle.features().contains(wgpu::Features::SHADER_F64)
+        self.handle.features().contains(FOR_PATHS)
     }
 
     /// Returns why the device cannot follow whole paths, if so: what its arithmetic lacks.
@@ -324,7 +329,7 @@ impl Device {
     ) -> Result<(), DeviceError> {
         let kernel = self.compiled(kernel)?;
         let group = self.bind(kernel, buffers);
-        self.submit(|encoder| pass(encoder, (kernel, &group), invocations));
+        self.submit(|encoder| pass(encoder, (kernel, &group), invocations, None));
         Ok(())
     }
 
@@ -348,9 +353,41 @@ impl Device {
         (from, to, bytes): (&wgpu::Buffer, &wgpu::Buffer, u64),
     ) {
         self.submit(|encoder| {
-            pass(encoder, (kernel, group), invocations);
+            pass(encoder, (kernel, group), invocations, None);
             encoder.copy_buffer_to_buffer(from, 0, to, 0, bytes);
         });
+    }
+
+    /// Runs a kernel as [`Device::dispatch`], and returns how long it takes by the device's own clock; `None` if it has
+    /// no clock, and then does not run it.
+    pub(crate) fn clock(
+        &self,
+        (kernel, group): (&wgpu::ComputePipeline, &wgpu::BindGroup),
+        invocations: usize,
+    ) -> Result<Option<Duration>, DeviceError> {
+        const BYTES: u64 = size_of::<[u64; 2]>() as u64;
+        if !self.handle.features().contains(FOR_MEASUREMENTS) {
+            return Ok(None);
+        }
+        let set = self.handle.create_query_set(&wgpu::QuerySetDescriptor {
+            label: Some("start and end"),
+            ty: wgpu::QueryType::Timestamp,
+            count: 2,
+        });
+        let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
+        let ticks = self.buffer("ticks", BYTES, usage)?;
+        let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+        let copy = self.buffer("ticks to read", BYTES, usage)?;
+        self.submit(|encoder| {
+            pass(encoder, (kernel, group), invocations, Some(&set));
+            encoder.resolve_query_set(&set, 0..2, &ticks, 0);
+            encoder.copy_buffer_to_buffer(&ticks, 0, &copy, 0, BYTES);
+        });
+        let mut read = [0_u64; 2];
+        self.read(&copy, BYTES, |view| read = bytemuck::pod_read_unaligned(view))?;
+        let nanoseconds =
+            read[1].saturating_sub(read[0]) as f64 * f64::from(self.queue.get_timestamp_period());
+        Ok(Some(Duration::from_secs_f64(1e-9 * nanoseconds)))
     }
 
     /// Waits for all that the device was asked to do, writes to buffers included.
@@ -403,13 +440,21 @@ impl std::fmt::Debug for Device {
     }
 }
 
-/// Adds a kernel in groups of 64 invocations to what is asked for.
+/// Adds a kernel in groups of 64 invocations to what is asked for, and has its start and end written if there is a
+/// place for them.
 fn pass(
     encoder: &mut wgpu::CommandEncoder,
     (kernel, group): (&wgpu::ComputePipeline, &wgpu::BindGroup),
     invocations: usize,
+    ticks: Option<&wgpu::QuerySet>,
 ) {
-    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+    let timestamp_writes = ticks.map(|query_set| wgpu::ComputePassTimestampWrites {
+        query_set,
+        beginning_of_pass_write_index: Some(0),
+        end_of_pass_write_index: Some(1),
+    });
+    let mut pass =
+        encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
     pass.set_pipeline(kernel);
     pass.set_bind_group(0, group, &[]);
     pass.dispatch_workgroups(invocations.div_ceil(64) as u32, 1, 1);

@@ -4,7 +4,9 @@
 // derived in docs/gpu.md for what WGSL promises of f32, and hold however sums are ordered and products are fused
 // between two values that pass `keep`.
 
-// Each node in 14 rows: by axis and side, lower first, eight planes; and eight children.
+// Each node in six rows: the lower corner of its box, with the exponents of its grid's steps and the slots that have a
+// child in four bytes; by axis, the lower and then the upper planes of eight children in steps of the grid, a byte each;
+// and eight children. `nodes.rs` makes them.
 @group(0) @binding(1) var<storage, read> nodes: array<vec4<u32>>;
 // Columns of spheres.
 @group(0) @binding(2) var<storage, read> spheres_0: array<vec4<u32>>;
@@ -20,8 +22,8 @@ override ANY: bool = false;
 // True to answer with the numbers of nodes and, from bit 16 on, leaves that the search visits. For measurements.
 override COUNT: bool = false;
 
-const NODE_ROWS: u32 = 14u;
-const CHILD_ROW: u32 = 12u;
+const NODE_ROWS: u32 = 6u;
+const CHILD_ROW: u32 = 4u;
 const LEAF: u32 = 0x40000000u;
 const NO_CHILD: u32 = 0x80000000u;
 const DEPTH: u32 = 24u;
@@ -33,9 +35,10 @@ const K: f32 = 20.0 * E;
 // More than anything that flushed numbers change.
 const TINY: f32 = 0x1p-60f;
 const TINY_SQUARE: f32 = 0x1p-100f;
-// Distances of planes are moved by this part of the origin's, and near ones decreased.
+// Distances of planes are moved by this part of the distance of the box's corner and of the grid's width.
 const SLACK: f32 = 16.0 * E;
-const SOONER: f32 = 1.0 - 16.0 * E;
+// Steps of a grid, and one more.
+const STEPS: f32 = 256.0;
 // Directions are kept this far from 0.
 const LEAST: f32 = 0x1p-100f;
 // Bits of 2^20, 1/4 and 4: the largest coordinate of origins, and the range of that of directions.
@@ -82,6 +85,32 @@ struct Search {
     // A distance before which the search does not end, and one beyond which nothing counts.
     bound: f32,
     t_far: f32,
+}
+
+// 1 if the line of a ray may meet a sphere, else 0. `test_sphere` decides. The reach is a sum of what is not below 0, in
+// which any order will do.
+fn is_near(ray: ptr<function, Ray>, bits: vec4<u32>) -> u32 {
+    let radius = bitcast<f32>(bits.w & 0x7fffffffu);
+    let to_center = keep3(bitcast<vec3<f32>>(bits.xyz) - (*ray).origin);
+    let middle = keep(dot(to_center, (*ray).direction) * (*ray).inverse_length2);
+    let perpendicular = keep3(to_center - middle * (*ray).direction);
+    let reach = radius * (1.0 + K) + (abs(middle) * K * (*ray).length + TINY);
+    let meets = dot(perpendicular, perpendicular) <= reach * reach;
+    return select(0u, 1u, meets && (bits.w & 0x80000000u) == 0u);
+}
+
+// The spheres of a leaf that the line of a ray may meet: a bit for each. All are read at once.
+fn spheres_near(ray: ptr<function, Ray>, first: u32) -> u32 {
+    let s0 = sphere_row(first);
+    let s1 = sphere_row(first + 1u);
+    let s2 = sphere_row(first + 2u);
+    let s3 = sphere_row(first + 3u);
+    let s4 = sphere_row(first + 4u);
+    let s5 = sphere_row(first + 5u);
+    let s6 = sphere_row(first + 6u);
+    let s7 = sphere_row(first + 7u);
+    return is_near(ray, s0) | is_near(ray, s1) << 1u | is_near(ray, s2) << 2u | is_near(ray, s3) << 3u
+        | is_near(ray, s4) << 4u | is_near(ray, s5) << 5u | is_near(ray, s6) << 6u | is_near(ray, s7) << 7u;
 }
 
 // Whether a sphere is the one in a row, or coincides with it.
@@ -175,35 +204,55 @@ fn in_order_of(octant: u32, slots: u32) -> u32 {
 }
 
 struct Slabs {
+    origin: vec3<f32>,
     inverse: vec3<f32>,
-    // Terms of near and far distances.
-    near: vec3<f32>,
-    far: vec3<f32>,
     negative: vec3<bool>,
     octant: u32,
 }
 
-// The children of half a node that the ray may enter before `t_far`: a bit for each.
-fn entered(slabs: ptr<function, Slabs>, row: u32, t_far: f32) -> u32 {
-    var near = vec4<f32>(0.0);
-    var far = vec4<f32>(t_far);
-    for (var axis = 0u; axis < 3u; axis++) {
-        let low = bitcast<vec4<f32>>(nodes[row + 4u * axis]);
-        let high = bitcast<vec4<f32>>(nodes[row + 4u * axis + 2u]);
-        let negative = (*slabs).negative[axis];
-        let inverse = (*slabs).inverse[axis];
-        near = max(near, select(low, high, negative) * inverse + (*slabs).near[axis]);
-        far = min(far, select(high, low, negative) * inverse + (*slabs).far[axis]);
-    }
-    let child = nodes[row + CHILD_ROW];
-    let hit = (near * SOONER <= far) & (child != vec4<u32>(NO_CHILD));
-    return dot(vec4<u32>(hit), vec4<u32>(1u, 2u, 4u, 8u));
+// Four bytes as numbers.
+fn bytes(word: u32) -> vec4<f32> {
+    return vec4<f32>((vec4<u32>(word) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(0xffu));
 }
 
+// The children of a node that the ray may enter before `t_far`: a bit for each, in the order in which it meets them.
 fn children_entered(slabs: ptr<function, Slabs>, node: u32, t_far: f32) -> u32 {
     let row = node * NODE_ROWS;
-    let slots = entered(slabs, row, t_far) | (entered(slabs, row + 1u, t_far) << 4u);
-    return in_order_of((*slabs).octant, slots);
+    let corner = nodes[row];
+    let planes_x = nodes[row + 1u];
+    let planes_y = nodes[row + 2u];
+    let planes_z = nodes[row + 3u];
+    let inverse = (*slabs).inverse;
+    // Of a distance: what a step of the grid adds, and what the corner is at.
+    let exponents = (vec3<u32>(corner.w) >> vec3<u32>(0u, 8u, 16u)) & vec3<u32>(0xffu);
+    let step = bitcast<vec3<f32>>(exponents << vec3<u32>(23u)) * inverse;
+    let base = keep3(bitcast<vec3<f32>>(corner.xyz) - (*slabs).origin) * inverse;
+    let slack = (abs(base) + abs(step) * STEPS) * SLACK;
+    let near_base = base - slack;
+    let far_base = base + slack;
+    let negative = (*slabs).negative;
+    let near_x = select(planes_x.xy, planes_x.zw, negative.x);
+    let near_y = select(planes_y.xy, planes_y.zw, negative.y);
+    let near_z = select(planes_z.xy, planes_z.zw, negative.z);
+    let far_x = select(planes_x.zw, planes_x.xy, negative.x);
+    let far_y = select(planes_y.zw, planes_y.xy, negative.y);
+    let far_z = select(planes_z.zw, planes_z.xy, negative.z);
+    var slots = 0u;
+    {
+        let near = max(max(bytes(near_x.x) * step.x + near_base.x, bytes(near_y.x) * step.y + near_base.y),
+            max(bytes(near_z.x) * step.z + near_base.z, vec4<f32>(0.0)));
+        let far = min(min(bytes(far_x.x) * step.x + far_base.x, bytes(far_y.x) * step.y + far_base.y),
+            min(bytes(far_z.x) * step.z + far_base.z, vec4<f32>(t_far)));
+        slots = dot(vec4<u32>(near <= far), vec4<u32>(1u, 2u, 4u, 8u));
+    }
+    {
+        let near = max(max(bytes(near_x.y) * step.x + near_base.x, bytes(near_y.y) * step.y + near_base.y),
+            max(bytes(near_z.y) * step.z + near_base.z, vec4<f32>(0.0)));
+        let far = min(min(bytes(far_x.y) * step.x + far_base.x, bytes(far_y.y) * step.y + far_base.y),
+            min(bytes(far_z.y) * step.z + far_base.z, vec4<f32>(t_far)));
+        slots |= dot(vec4<u32>(near <= far), vec4<u32>(16u, 32u, 64u, 128u));
+    }
+    return in_order_of((*slabs).octant, slots & (corner.w >> 24u));
 }
 
 // The answer for a search that has passed the tree.
@@ -221,10 +270,8 @@ fn trace(ray: ptr<function, Ray>, search: ptr<function, Search>) -> u32 {
     let direction = (*ray).direction;
     let least = select(vec3<f32>(LEAST), vec3<f32>(-LEAST), direction < vec3<f32>(0.0));
     let kept = select(direction, least, abs(direction) < vec3<f32>(LEAST));
+    slabs.origin = (*ray).origin;
     slabs.inverse = keep3(1.0 / kept);
-    let shift = keep3((*ray).origin * slabs.inverse);
-    slabs.near = keep3(-shift - abs(shift) * SLACK);
-    slabs.far = keep3(abs(shift) * SLACK - shift);
     slabs.negative = kept < vec3<f32>(0.0);
     slabs.octant = dot(vec3<u32>(slabs.negative), vec3<u32>(1u, 2u, 4u));
     var stack: array<vec2<u32>, DEPTH>;
@@ -259,8 +306,11 @@ fn trace(ray: ptr<function, Ray>, search: ptr<function, Search>) -> u32 {
         }
         visits += 1u << 16u;
         let first = (child & (LEAF - 1u)) * 8u;
-        for (var lane = 0u; lane < 8u; lane++) {
-            test_sphere(ray, search, first + lane);
+        for (var near = spheres_near(ray, first); near != 0u; near &= near - 1u) {
+            test_sphere(ray, search, first + firstTrailingBit(near));
+            if ANY && (*search).sphere != MISS {
+                break;
+            }
         }
         if ANY && (*search).sphere != MISS {
             if (*search).far < (*search).bound {

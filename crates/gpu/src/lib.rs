@@ -21,6 +21,7 @@ mod device;
 mod error;
 mod job;
 mod materials;
+mod nodes;
 mod paths;
 mod probe;
 mod spheres;

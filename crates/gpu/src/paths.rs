@@ -95,7 +95,7 @@ impl Integrator {
         stage(Kernel::Generate)?;
         let camera_rays = read_column(paths.device(), &columns.rays, count)?;
         let sequences = read_column(paths.device(), &columns.sequences, count)?;
-        stage(Kernel::Hits { any: false, counts: false })?;
+        stage(self.tree.hits(false, false))?;
         let found = read_column(paths.device(), &columns.found, count)?;
         stage(match job.integration {
             DeviceIntegration::Occlusion { .. } => Kernel::Occlusion,
@@ -252,26 +252,28 @@ impl JobPaths {
 
     /// Runs the stages of all paths of a batch.
     fn follow_all(&self, columns: &Columns, params: Params) -> Result<(), DeviceError> {
-        const FIRST_HITS: Kernel = Kernel::Hits { any: false, counts: false };
-        const ANY_HITS: Kernel = Kernel::Hits { any: true, counts: false };
+        let [first_hits, any_hits] = [false, true].map(|any| self.tree.hits(any, false));
         let device = self.device();
         let stage = |kernel| self.stage(kernel, columns, params.count as usize);
         self.set_params(columns, &params);
         stage(Kernel::Generate)?;
         if let DeviceIntegration::Occlusion { .. } = self.integration {
-            stage(FIRST_HITS)?;
+            stage(first_hits)?;
             stage(Kernel::Occlusion)?;
-            stage(ANY_HITS)?;
+            stage(any_hits)?;
             return stage(Kernel::Shadows);
         }
         for bounce in 0.. {
             self.set_params(columns, &Params { bounce, ..params });
             device.write(&columns.alive, &0_u32.to_ne_bytes());
-            stage(FIRST_HITS)?;
+            stage(first_hits)?;
             stage(Kernel::Path)?;
             if self.shadows() > 0 {
-                stage(ANY_HITS)?;
+                stage(any_hits)?;
                 stage(Kernel::Shadows)?;
+            }
+            if !is_counted(bounce) {
+                continue;
             }
             let mut left = 0_u32;
             let bytes = size_of_val(&left) as u64;
@@ -285,6 +287,12 @@ impl JobPaths {
         }
         Ok(())
     }
+}
+
+/// Returns whether the paths that go on after a bounce are counted, for which the device is waited for. A bounce without
+/// any takes it less time.
+fn is_counted(bounce: u32) -> bool {
+    bounce == 0 || bounce % 4 == 3
 }
 
 impl DevicePaths for JobPaths {

@@ -6,8 +6,9 @@ use crate::error::DeviceError;
 /// A kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kernel {
-    /// Hits of rays: the first, or any if `any`; or, if `counts`, the visits of the search.
-    Hits { any: bool, counts: bool },
+    /// Hits of rays: the first, or any if `any`; or, if `counts`, the visits of the search. Spheres may be `cut` into
+    /// several columns.
+    Hits { any: bool, counts: bool, cut: bool },
     /// The test of double precision.
     Doubles,
     /// Camera rays.
@@ -22,17 +23,19 @@ pub(crate) enum Kernel {
 
 impl Kernel {
     /// The number of kernels.
-    pub(crate) const COUNT: usize = 9;
+    pub(crate) const COUNT: usize = 13;
 
     /// Returns its place among all kernels.
     pub(crate) fn place(self) -> usize {
         match self {
-            Self::Hits { any, counts } => usize::from(any) + 2 * usize::from(counts),
-            Self::Generate => 4,
-            Self::Occlusion => 5,
-            Self::Shadows => 6,
-            Self::Path => 7,
-            Self::Doubles => 8,
+            Self::Hits { any, counts, cut } => {
+                usize::from(any) + 2 * usize::from(counts) + 4 * usize::from(cut)
+            }
+            Self::Generate => 8,
+            Self::Occlusion => 9,
+            Self::Shadows => 10,
+            Self::Path => 11,
+            Self::Doubles => 12,
         }
     }
 
@@ -45,9 +48,8 @@ impl Kernel {
     pub(crate) fn compile(self, device: &Device) -> Result<wgpu::ComputePipeline, DeviceError> {
         let (name, files) = self.files();
         let constants: &[(&str, f64)] = match self {
-            Self::Hits { any, counts } => {
-                &[("ANY", u8::from(any).into()), ("COUNT", u8::from(counts).into())]
-            }
+            Self::Hits { any, counts, cut } => &[("ANY", any), ("COUNT", counts), ("CUT", cut)]
+                .map(|(name, is)| (name, u8::from(is).into())),
             _ => &[],
         };
         device.kernel((name, &files.concat()), constants)

@@ -37,17 +37,31 @@ impl QueryStage {
 
 /// Times of the stages of a query, each of which was waited for.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct QueryTimes([Duration; QueryStage::ALL.len()]);
+pub struct QueryTimes {
+    stages: [Duration; QueryStage::ALL.len()],
+    /// Of the kernel, by the device's clock; zero if it has none.
+    clock: Duration,
+}
 
 impl QueryTimes {
     /// Returns the seconds of a stage.
     pub fn seconds(&self, stage: QueryStage) -> f64 {
-        self.0[stage as usize].as_secs_f64()
+        self.stages[stage as usize].as_secs_f64()
+    }
+
+    /// Returns the seconds of the kernel by the device's clock, without what it takes to start it; if the device has no
+    /// clock, those of the stage.
+    pub fn kernel_seconds(&self) -> f64 {
+        if self.clock.is_zero() {
+            self.seconds(QueryStage::Kernel)
+        } else {
+            self.clock.as_secs_f64()
+        }
     }
 
     /// Returns the seconds of all stages.
     pub fn total(&self) -> f64 {
-        self.0.iter().sum::<Duration>().as_secs_f64()
+        self.stages.iter().sum::<Duration>().as_secs_f64()
     }
 }
 
@@ -70,8 +84,19 @@ impl Stopwatch {
         let Some((from, times)) = &mut self.0 else { return Ok(()) };
         device.finish()?;
         let now = Instant::now();
-        times.0[stage as usize] += now - *from;
+        times.stages[stage as usize] += now - *from;
         *from = now;
+        Ok(())
+    }
+
+    /// Runs a measurement of the kernel that counts for no stage, if anything is measured.
+    pub(crate) fn clock(
+        &mut self,
+        measure: impl FnOnce() -> Result<Option<Duration>, DeviceError>,
+    ) -> Result<(), DeviceError> {
+        let Some((from, times)) = &mut self.0 else { return Ok(()) };
+        times.clock += measure()?.unwrap_or_default();
+        *from = Instant::now();
         Ok(())
     }
 

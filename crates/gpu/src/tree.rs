@@ -2,11 +2,10 @@
 
 use crate::device::Device;
 use crate::error::DeviceError;
+use crate::nodes;
 use crate::stages::Kernel;
 use crate::times::{QueryStage, QueryTimes, Stopwatch};
-use spherule_core::internals::bvh::{
-    Any, Closest, DeviceTracer, NodeRow, Query, Tracer, Tree, UNKNOWN, decide_found,
-};
+use spherule_core::internals::bvh::{Any, Closest, Query, Tracer, Tree, UNKNOWN, decide_found};
 use spherule_core::internals::ray::{Hits, MISS, Rays};
 use spherule_core::internals::spheres::{LEAF, SphereBlock};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -17,12 +16,11 @@ const BRICKS: usize = 4;
 /// Rays of one dispatch at most.
 const BATCH: usize = 1 << 20;
 
-/// Words of a node, of a sphere and of a ray.
-const NODE: usize = 56;
+/// Words of a sphere and of a ray.
 const SPHERE: usize = 4;
 const RAY: usize = 12;
 
-/// The bit of a child that is none, and of a radius where there is no sphere.
+/// The bit of a radius where there is no sphere.
 const NONE: u32 = 1 << 31;
 
 /// A distance that counts as infinite.
@@ -86,6 +84,8 @@ pub struct DeviceTree {
     single: bool,
     columns: Vec<wgpu::Buffer>,
     brick_bits: u32,
+    /// True if there is more than one column of spheres.
+    is_cut: bool,
     batch: usize,
     /// Buffers that no query uses now.
     lanes: Mutex<Vec<Lane>>,
@@ -113,7 +113,8 @@ impl DeviceTree {
             let what = format!("{} spheres", tree.spheres.len());
             return Err(DeviceError::Memory { what });
         }
-        let mut columns = vec![device.filled("nodes", bytemuck::cast_slice(&nodes(tree)))?];
+        let mut columns =
+            vec![device.filled("nodes", bytemuck::cast_slice(&nodes::rows(tree.bvh)))?];
         let mut bricks = blocks.chunks((1 << brick_bits) / LEAF);
         for _ in 0..BRICKS {
             let rows = bricks.next().map(sphere_rows).unwrap_or_default();
@@ -125,6 +126,7 @@ impl DeviceTree {
             single: tree.spheres.precise.is_empty(),
             columns,
             brick_bits,
+            is_cut: blocks.len() * LEAF > 1 << brick_bits,
             batch: BATCH.min(most as usize / size_of::<[u32; RAY]>()),
             lanes: Mutex::default(),
             tally: Mutex::default(),
@@ -171,7 +173,7 @@ impl DeviceTree {
         any: bool,
     ) -> Result<(Answered, QueryTimes), DeviceError> {
         let mut watch = Stopwatch::start();
-        let kernel = Kernel::Hits { any, counts: false };
+        let kernel = self.hits(any, false);
         let found = self.run(kernel, rays, hits, &mut watch)?;
         let exact = if any {
             decide_found::<Any>(tree, rays, hits, |row| found[row])
@@ -196,6 +198,11 @@ impl DeviceTree {
             nodes: self.size[0] as u32,
             ..Params::default()
         }
+    }
+
+    /// Returns the kernel that searches this tree: for any hit if `any`, and for the visits of it if `counts`.
+    pub(crate) fn hits(&self, any: bool, counts: bool) -> Kernel {
+        Kernel::Hits { any, counts, cut: self.is_cut }
     }
 
     /// Returns whether single precision holds the spheres.
@@ -257,7 +264,7 @@ impl DeviceTree {
     /// # Errors
     /// The device fails.
     pub fn find(&self, rays: &Rays, hits: &Hits, any: bool) -> Result<Vec<u32>, DeviceError> {
-        self.run(Kernel::Hits { any, counts: false }, rays, hits, &mut Stopwatch::off())
+        self.run(self.hits(any, false), rays, hits, &mut Stopwatch::off())
     }
 
     /// Returns how many nodes and leaves the search for the hit of each ray visits on the device; 65 535 at most. For
@@ -272,7 +279,7 @@ impl DeviceTree {
         hits: &Hits,
         any: bool,
     ) -> Result<Vec<[u16; 2]>, DeviceError> {
-        let kernel = Kernel::Hits { any, counts: true };
+        let kernel = self.hits(any, true);
         let visits = self.run(kernel, rays, hits, &mut Stopwatch::off())?;
         Ok(visits.into_iter().map(|both| [both as u16, (both >> 16) as u16]).collect())
     }
@@ -350,6 +357,7 @@ impl DeviceTree {
         let group = self.device.bind(kernel, &buffers);
         self.device.dispatch((kernel, &group), found.len(), (&lane.found, &lane.copy, bytes));
         watch.end(QueryStage::Kernel, &self.device)?;
+        watch.clock(|| self.device.clock((kernel, &group), found.len()))?;
         self.device.read(&lane.copy, bytes, |view| {
             bytemuck::cast_slice_mut(found).copy_from_slice(view);
         })?;
@@ -368,16 +376,6 @@ impl std::fmt::Debug for DeviceTree {
     }
 }
 
-impl DeviceTracer for DeviceTree {
-    fn closest(&self, tree: Tree, rays: &Rays, hits: &mut Hits) -> u64 {
-        Self::closest(self, tree, rays, hits).exact
-    }
-
-    fn occluded(&self, tree: Tree, rays: &Rays, hits: &mut Hits) -> u64 {
-        Self::occluded(self, tree, rays, hits).exact
-    }
-}
-
 /// Returns the numbers of nodes and of spheres of a tree.
 fn size(tree: Tree) -> [usize; 2] {
     [tree.bvh.len(), tree.spheres.len()]
@@ -386,20 +384,6 @@ fn size(tree: Tree) -> [usize; 2] {
 /// Returns the number of answers that are not known.
 pub(crate) fn unknown(found: &[u32]) -> u64 {
     found.iter().filter(|&&sphere| sphere == UNKNOWN).count() as u64
-}
-
-/// Returns the nodes; boxes of children that are none are finite, for kernels know no infinity.
-fn nodes(tree: Tree) -> Vec<[u32; NODE]> {
-    let node = |row: NodeRow| {
-        let mut words: [u32; NODE] = bytemuck::cast(row);
-        for child in 0..LEAF {
-            if words[NODE - LEAF + child] == NONE {
-                words[..NODE - LEAF].iter_mut().skip(child).step_by(LEAF).for_each(|x| *x = 0);
-            }
-        }
-        words
-    };
-    tree.bvh.rows().map(node).collect()
 }
 
 /// Returns the spheres of blocks one by one.

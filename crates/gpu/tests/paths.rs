@@ -12,7 +12,7 @@ use spherule_render::World;
 use spherule_render::bvh::Tree;
 use spherule_render::film::Region;
 use spherule_render::render::{
-    End, ImagePart, Options, Progress, Render, ResumableRender, render, shaded_by_the_processor,
+    End, ImagePart, Options, Progress, Render, ResumableRender, not_followed, render,
 };
 use spherule_render::scene::{
     Background, ConductorFresnel, EnvironmentMap, Integrator, Lens, Light, Material, Preset, Rgb,
@@ -52,7 +52,6 @@ fn attach(world: &mut World, device: &Arc<Device>) -> Arc<DeviceTree> {
     let tree = Tree { bvh: &world.bvh, spheres: &world.spheres };
     let on_device = Arc::new(DeviceTree::new(device, tree).unwrap());
     let paths = DeviceIntegrator::new(&on_device, world).unwrap();
-    world.device = Some(on_device.clone());
     world.device_paths = Some(Arc::new(paths));
     on_device
 }
@@ -64,7 +63,7 @@ fn image(world: &World, scene: &Scene) -> Render {
 /// Compares pictures of the device and of the processor; returns what the device answered.
 fn compare(name: &str, scene: &Scene, device: &Arc<Device>) -> Answered {
     let mut world = World::build(scene).unwrap();
-    assert_eq!(shaded_by_the_processor(&world, &scene.settings), None, "{name}");
+    assert_eq!(not_followed(&world, &scene.settings), None, "{name}");
     let own = image(&world, scene);
     let on_device = attach(&mut world, device);
     let found = image(&world, scene);
@@ -365,7 +364,7 @@ fn what_devices_do_not_do_is_told() {
         diffuse(&mut scene);
         change(&mut scene);
         let world = World::build(&scene).unwrap();
-        shaded_by_the_processor(&world, &scene.settings)
+        not_followed(&world, &scene.settings)
     };
     assert_eq!(told(&|_| ()), None);
     let glass = |scene: &mut Scene| {
@@ -386,6 +385,6 @@ fn what_devices_do_not_do_is_told() {
     assert_eq!(told(&independent), Some("devices have Sobol points only"));
     let scene = named("veach.toml");
     let world = World::build(&scene).unwrap();
-    let why = shaded_by_the_processor(&world, &scene.settings);
+    let why = not_followed(&world, &scene.settings);
     assert_eq!(why, Some("the scene has lights other than a sun and an even sky"));
 }

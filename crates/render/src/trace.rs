@@ -12,7 +12,6 @@ use self::bodies::Bodies;
 use self::clipped::ClippedRays;
 use self::translucent::Choice;
 pub(crate) use self::translucent::Chosen;
-use crate::bvh::Tree;
 use crate::ray::{Hits, MISS, Rays};
 use crate::world::World;
 
@@ -95,13 +94,7 @@ fn trace(tracer: Tracer, query: Query, world: &World, rays: &Rays, hits: &mut Hi
     if world.is_sliced() {
         return trace_sliced(tracer, query, world, rays, hits);
     }
-    let (bodies, tree) = (Bodies::all(world), Tree { bvh: &world.bvh, spheres: &world.spheres });
-    let exact = match (&world.device, query) {
-        (None, _) => return bodies.trace(tracer, query, rays, hits),
-        (Some(device), Query::Closest) => device.closest(tree, rays, hits),
-        (Some(device), Query::Any) => device.occluded(tree, rays, hits),
-    };
-    exact + bodies.trace_others(query, rays, hits)
+    Bodies::all(world).trace(tracer, query, rays, hits)
 }
 
 /// Traces rays where slices hide bodies from the camera, or cut them.

@@ -59,7 +59,7 @@ pub(in crate::cli) struct SpeedArgs {
     /// Rays per packet [default: 16]
     #[arg(long, value_parser = names::parser(&LANES))]
     pub(in crate::cli) lanes: Option<PacketWidth>,
-    /// Device that traces rays
+    /// Device that follows paths
     #[arg(long, value_enum, default_value_t = Device::Auto)]
     pub(in crate::cli) device: Device,
 }

@@ -1,6 +1,7 @@
 //! Benchmark of the GPU: rays per second by class, times of stages, and time to an error, beside the processor.
 
 use super::super::devices;
+use crate::cli::names::Device as Choice;
 use spherule_gpu::{AdapterSummary, Device, DeviceTree, QueryStage, QueryTimes};
 use spherule_measure::bench::convergence::Reference;
 use spherule_measure::bench::rounds::{Times, clock};
@@ -12,7 +13,7 @@ use spherule_render::bvh::builders::{Builder, build};
 use spherule_render::bvh::{Tracer, Tree};
 use spherule_render::ray::{Hits, MISS, Rays};
 use spherule_render::render::{self, render};
-use spherule_render::scene::{EnvironmentMap, Integrator, Material, Rgb, Settings};
+use spherule_render::scene::{Camera, Integrator, Material, Rgb, Settings, Spheres};
 use spherule_render::world::World;
 use std::sync::Arc;
 use std::time::Instant;
@@ -221,20 +222,33 @@ fn compare(
     }
 }
 
-/// The scenes of images.
+/// The scenes of images; none if scenes of rays were chosen.
 fn pictures(options: &Options) -> Result<Vec<NamedScene>, BenchError> {
-    let field = NamedScene::named(FIELD)?.resized(options.pick([24, 96, 640]));
-    let mut occlusion = field.clone();
+    if !options.scenes.is_empty() {
+        return Ok(Vec::new());
+    }
+    let width = options.pick([24, 96, 512]);
+    let mut occlusion = NamedScene::named(FIELD)?.resized(width);
     occlusion.name = format!("{FIELD}, ambient occlusion");
     occlusion.scene.settings.integrator = Integrator::Ao { distance: f64::INFINITY };
-    let mut chalk = field.clone();
-    chalk.name = format!("{FIELD}, chalk under a sky");
-    chalk.scene.lights.clear();
-    chalk.scene.environment.map = EnvironmentMap::Constant(Rgb::ONE);
-    for row in &mut chalk.scene.materials {
-        row.material = Material::Lambertian { color: Rgb::splat(0.8) };
+    let mut volume = occlusion.clone();
+    let set = SphereScene::VOLUME10K;
+    volume.name = format!("{}, ambient occlusion", set.name);
+    volume.scene.ground = None;
+    volume.scene.camera = Camera::default();
+    volume.scene.spheres = Spheres::default();
+    let spheres = set.spheres()?;
+    for row in 0..spheres.len() {
+        let (center, radius) = (spheres.center(row).as_dvec3(), f64::from(spheres.radius(row)));
+        volume.scene.spheres.push(center, radius, 0, Rgb::splat(0.8));
     }
-    Ok(vec![field, occlusion, chalk])
+    let mut chalk = volume.clone();
+    chalk.name = format!("{}, chalk under sun and sky", set.name);
+    chalk.scene.settings.integrator = Integrator::Path;
+    for row in &mut chalk.scene.materials {
+        row.material = Material::Lambertian { color: Rgb::ONE };
+    }
+    Ok(vec![occlusion, volume, chalk])
 }
 
 fn measure_images(
@@ -246,7 +260,7 @@ fn measure_images(
     progress(&format!("gpu: {}, reference of 2 x {samples} samples per pixel", scene.name));
     let reference = Reference::new(scene, &own, samples, None)?;
     let mut other = scene.world()?;
-    let device = devices::Attached::to(&mut other, crate::cli::names::Device::Gpu);
+    let device = devices::Attached::to(&mut other, &scene.scene.settings, Choice::Gpu);
     if let Some(why) = device.refusal() {
         return Err(BenchError::Device(why));
     }
@@ -302,7 +316,11 @@ fn rates(outcomes: &[Outcome]) -> Table {
         Column::new("unknown", "Fraction of rays that the processor decides.")
             .style(Style::Percent),
         Column::new("query", "Rays per second, with all stages.").unit("Mrays/s"),
-        Column::new("kernel", "Rays per second of the kernel alone.").unit("Mrays/s"),
+        Column::new(
+            "kernel",
+            "Rays per second of the kernel alone, by the device's clock if it has one.",
+        )
+        .unit("Mrays/s"),
         Column::new("processor", "Rays per second on one thread of the processor.").unit("Mrays/s"),
         Column::new("ratio", "Speedup of the query over one thread.").unit("processor"),
     ];
@@ -313,7 +331,7 @@ fn rates(outcomes: &[Outcome]) -> Table {
     }));
     let mut table = Table::new("gpu", "Rays", columns);
     for outcome in outcomes {
-        let kernel = seconds(outcome, |times| times.seconds(QueryStage::Kernel));
+        let kernel = seconds(outcome, QueryTimes::kernel_seconds);
         let cells = [
             outcome.scene.name.into(),
             outcome.class.name().into(),

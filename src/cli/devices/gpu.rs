@@ -11,39 +11,33 @@ use spherule_gpu::{
 };
 use spherule_render::World;
 use spherule_render::bvh::Tree;
-use spherule_render::render::shaded_by_the_processor;
+use spherule_render::render::not_followed;
 use spherule_render::scene::Settings;
 use std::sync::{Arc, OnceLock};
 
 /// The device of this process. Once it is lost, the processor does all that follows.
 static DEVICE: OnceLock<Result<Arc<Device>, DeviceError>> = OnceLock::new();
 
-/// The device that traces the rays of a world.
+/// The device that follows the paths of a world's renders.
 #[derive(Debug)]
 pub(in crate::cli) struct Attached {
     choice: Choice,
     tree: Option<Arc<DeviceTree>>,
-    /// Why the device follows no whole paths, whatever the render, if so.
-    no_paths: Option<String>,
     refusal: Option<String>,
     /// True once it was told that the device is lost.
     told: bool,
 }
 
 impl Attached {
-    /// Copies a world's spheres to a device if that is wanted and possible, and lets it trace their rays.
-    pub(in crate::cli) fn to(world: &mut World, choice: Choice) -> Self {
-        let mut attached = Self { choice, tree: None, no_paths: None, refusal: None, told: false };
+    /// Copies a world's spheres to a device if that is wanted and possible, and lets it follow the paths of a render.
+    pub(in crate::cli) fn to(world: &mut World, settings: &Settings, choice: Choice) -> Self {
+        let mut attached = Self { choice, tree: None, refusal: None, told: false };
         if choice != Choice::Gpu {
             return attached;
         }
-        match on_device(world) {
-            Ok(tree) => {
-                match Integrator::new(&tree, world) {
-                    Ok(paths) => world.device_paths = Some(Arc::new(paths)),
-                    Err(why) => attached.no_paths = Some(why),
-                }
-                world.device = Some(tree.clone());
+        match on_device(world, settings) {
+            Ok((tree, paths)) => {
+                world.device_paths = Some(Arc::new(paths));
                 attached.tree = Some(tree);
             }
             Err(why) => attached.refusal = Some(format!("--device gpu has no effect: {why}")),
@@ -52,8 +46,8 @@ impl Attached {
     }
 
     /// Does for another world what was done for the last one.
-    pub(in crate::cli) fn renew(&mut self, world: &mut World) {
-        *self = Self { told: self.told, ..Self::to(world, self.choice) };
+    pub(in crate::cli) fn renew(&mut self, world: &mut World, settings: &Settings) {
+        *self = Self { told: self.told, ..Self::to(world, settings, self.choice) };
     }
 
     /// The reason why there is no device, if one was asked for.
@@ -61,21 +55,22 @@ impl Attached {
         self.refusal.clone()
     }
 
-    /// Returns lines about the device, and what it does of a render.
-    pub(in crate::cli) fn facts(&self, world: &World, settings: &Settings) -> Vec<String> {
+    /// Returns lines about the device.
+    pub(in crate::cli) fn facts(&self) -> Vec<String> {
         let Some(tree) = &self.tree else { return Vec::new() };
         let device = tree.device();
         let AdapterSummary { name, backend, .. } = device.summary();
         let bytes = BinaryBytes(tree.bytes());
-        let shaded = shaded_by_the_processor(world, settings).map(str::to_owned);
-        let stages = match self.no_paths.clone().or(shaded) {
-            None => "follows paths from the camera to their ends".to_owned(),
-            Some(why) => format!("traces rays; the processor shades, for {why}"),
+        let but = match device.probe().subnormals {
+            Subnormals::Kept => "",
+            Subnormals::Flushed => ", unless light below 1.2e-38 matters",
         };
         vec![
-            format!("device: {name} ({backend}), with {bytes} of spheres and tree, {stages}"),
             format!(
-                "its arithmetic: {}; images are the processor's to the byte, which does what the device is not certain of",
+                "device: {name} ({backend}), with {bytes} of spheres and tree, follows paths from the camera to their ends"
+            ),
+            format!(
+                "its arithmetic: {}; the processor follows the paths that the device is not certain of, and images are the processor's to the byte{but}",
                 arithmetic(device.probe())
             ),
         ]
@@ -84,7 +79,7 @@ impl Attached {
     /// Returns the fault of the device, if it has one.
     pub(in crate::cli) fn fault(&self) -> Option<String> {
         let error = self.tree.as_ref()?.device().fault()?;
-        Some(format!("{error}; the processor traced what was left"))
+        Some(format!("{error}; the processor rendered what was left"))
     }
 
     /// [`Attached::fault`], once.
@@ -103,14 +98,17 @@ impl Attached {
     }
 }
 
-/// Copies the spheres and the tree of a world to the device.
-fn on_device(world: &World) -> Result<Arc<DeviceTree>, String> {
-    if world.is_sliced() {
-        return Err("slices are traced by the processor".to_owned());
+/// Copies the spheres, the tree and the materials of a world to the device, or says why it cannot follow the paths of a
+/// render.
+fn on_device(world: &World, settings: &Settings) -> Result<(Arc<DeviceTree>, Integrator), String> {
+    if let Some(why) = not_followed(world, settings) {
+        return Err(format!("no GPU follows these paths yet: {why}"));
     }
     let device = open()?;
     let tree = Tree { bvh: &world.bvh, spheres: &world.spheres };
-    DeviceTree::new(&device, tree).map(Arc::new).map_err(|error| error.to_string())
+    let tree = DeviceTree::new(&device, tree).map(Arc::new).map_err(|error| error.to_string())?;
+    let paths = Integrator::new(&tree, world)?;
+    Ok((tree, paths))
 }
 
 /// Returns the device of this process, or why there is none.

@@ -15,14 +15,14 @@ pub(in crate::cli) const ADVICE: &str =
 pub(in crate::cli) struct Attached(Device);
 
 impl Attached {
-    /// Leaves all rays to the processor.
-    pub(in crate::cli) fn to(_: &mut World, choice: Device) -> Self {
+    /// Leaves all to the processor.
+    pub(in crate::cli) fn to(_: &mut World, _: &Settings, choice: Device) -> Self {
         Self(choice)
     }
 
-    /// Leaves them again.
+    /// Leaves it again.
     #[expect(clippy::unused_self, reason = "as with a device")]
-    pub(in crate::cli) fn renew(&mut self, _: &mut World) {}
+    pub(in crate::cli) fn renew(&mut self, _: &mut World, _: &Settings) {}
 
     /// The reason why there is no device, if one was asked for.
     pub(in crate::cli) fn refusal(&self) -> Option<String> {
@@ -31,7 +31,7 @@ impl Attached {
 
     /// Nothing.
     #[expect(clippy::unused_self, reason = "as with a device")]
-    pub(in crate::cli) fn facts(&self, _: &World, _: &Settings) -> Vec<String> {
+    pub(in crate::cli) fn facts(&self) -> Vec<String> {
         Vec::new()
     }
 

@@ -41,8 +41,8 @@ pub(super) fn notes(job: &Job, scene: &Scene, world: &World) -> Vec<String> {
         "--lanes",
         "--traversal scalar and stream trace no packets",
     );
-    let device = world.device.is_some();
-    let on_device = "a GPU traces the rays";
+    let device = world.device_paths.is_some();
+    let on_device = "a GPU follows the paths";
     note(job.speed.lanes.is_some() && !alone, device, "--lanes", on_device);
     note(job.speed.traversal != Traversal::Auto, device, "--traversal", on_device);
     let encoding = job.encoding;

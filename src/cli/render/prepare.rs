@@ -60,7 +60,7 @@ pub(super) struct Prepared {
     pub(super) warnings: Vec<String>,
     /// Reason why the image shows no sphere, if it shows none.
     pub(super) empty: Option<String>,
-    /// The device that traces rays.
+    /// The device that follows paths.
     pub(super) device: Attached,
 }
 
@@ -204,7 +204,7 @@ impl PlacedScene {
             (world, builder)
         };
         let build = start.elapsed();
-        let device = Attached::to(&mut world, job.speed.device);
+        let device = Attached::to(&mut world, &scene.settings, job.speed.device);
         let mut warnings = std::mem::take(&mut scene.warnings);
         warnings.extend(dropped(&world));
         warnings.extend(device.refusal());
@@ -264,7 +264,7 @@ impl Prepared {
             notices.note(&text);
         }
         if job.report.verbose {
-            for text in self.device.facts(&self.world, &self.scene.settings) {
+            for text in self.device.facts() {
                 notices.note(&text);
             }
             output::note(format_args!("found: {}", found(&self.world).join(", ")));

@@ -68,7 +68,7 @@ pub(super) struct LoadedScene {
     pub(super) labels: Labels,
     pub(super) facts: Facts,
     pub(super) warnings: Vec<String>,
-    /// The device that traces rays.
+    /// The device that follows paths.
     pub(super) device: Attached,
 }
 
@@ -309,7 +309,7 @@ impl Loader {
         let origin = || Origin { job: Arc::clone(job), content: content.clone(), stamp };
         let origin = many.then(origin);
         let mut warnings = std::mem::take(&mut scene.warnings);
-        let device = Attached::to(&mut world, job.speed.device);
+        let device = Attached::to(&mut world, &scene.settings, job.speed.device);
         warnings.extend(device.refusal());
         let scene = Arc::new(RwLock::new(scene));
         Ok(LoadedScene {

@@ -220,7 +220,7 @@ impl Renderer {
             }
         };
         self.stage.world = built.map_err(failed)?;
-        self.stage.device.renew(&mut self.stage.world);
+        self.stage.device.renew(&mut self.stage.world, &scene.settings);
         self.overlay = OverlayCache::default();
         Ok(())
     }

@@ -19,15 +19,6 @@ pub const UNKNOWN: u32 = u32::MAX - 2;
 // No row of a sphere is so large.
 const _: () = assert!(Spheres::MAX < UNKNOWN as usize);
 
-/// Traces rays in place of the processor, on a device, with the same hits. Queries come from many threads.
-pub trait DeviceTracer: std::fmt::Debug + Send + Sync {
-    /// As [`Tracer::closest`](super::Tracer::closest), in the tree that the device has.
-    fn closest(&self, tree: Tree, rays: &Rays, hits: &mut Hits) -> u64;
-
-    /// As [`Tracer::occluded`](super::Tracer::occluded), in the tree that the device has.
-    fn occluded(&self, tree: Tree, rays: &Rays, hits: &mut Hits) -> u64;
-}
-
 /// Writes the hits of rays, of which `found` names the spheres: by row, the sphere that is hit first and before the
 /// ray's bound, or one that is if any hit will do; [`MISS`] if none is; or [`UNKNOWN`]. Otherwise as
 /// [`Tracer::closest`](super::Tracer::closest) and [`Tracer::occluded`](super::Tracer::occluded).

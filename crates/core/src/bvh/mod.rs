@@ -23,7 +23,7 @@ mod single;
 mod traversal;
 
 pub use beam::Beam;
-pub use found::{DeviceTracer, UNKNOWN, decide_found};
+pub use found::{UNKNOWN, decide_found};
 pub(crate) use intersections::{Intersection, for_each_intersection};
 pub use one_ray::{OneHit, trace_far, trace_one};
 pub(crate) use one_ray::{SMALL_STACK, STACK, Search, walk};

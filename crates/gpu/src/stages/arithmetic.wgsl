@@ -1,20 +1,21 @@
 // Arithmetic that rounds as the processor's: `lanes/mod.rs`, `lanes/fused.rs` and `vec3.rs` of spherule-core.
 //
 // Sums, differences and products of both precisions, quotients and roots of double precision, and conversions are those
-// of the device, which a probe has found to be correctly rounded. No product is fused with a sum: it is kept before.
+// of the device, which a probe has found to be correctly rounded. No product is fused with a sum, and no two sums are
+// made one: results are kept before.
 
-// 1, which no compiler knows.
-fn one() -> f64 {
-    return f64(bitcast<f32>(0x3f800000u ^ params.zero));
+// 0, which no compiler knows.
+fn zero64() -> u64 {
+    return (u64(params.zero) << 32u) | u64(params.zero);
 }
 
-// The same number. If `x * 1 + y` is fused, it is rounded as the sum alone.
+// The same number, through which nothing is fused or reordered.
 fn kept(x: f64) -> f64 {
-    return x * one();
+    return bitcast<f64>(bitcast<u64>(x) ^ zero64());
 }
 
 fn kept3(v: vec3<f64>) -> vec3<f64> {
-    return v * one();
+    return bitcast<vec3<f64>>(bitcast<vec3<u64>>(v) ^ vec3<u64>(zero64()));
 }
 
 // A quotient of single precision: that of double precision is never so close to the middle of two numbers that rounding
@@ -73,7 +74,7 @@ fn normalized(v: vec3<f32>) -> vec3<f32> {
 
 fn dot_unfused(a: vec3<f64>, b: vec3<f64>) -> f64 {
     let products = kept3(a * b);
-    return kept(products.x + products.y) + products.z;
+    return kept(kept(products.x + products.y) + products.z);
 }
 
 fn inverse_length(v: vec3<f64>) -> f64 {

@@ -12,8 +12,8 @@ fn basis_about(normal: vec3<f32>) -> Basis {
     let b = keep(keep(normal.x * normal.y) * a);
     let x2 = keep(keep(keep(sign * normal.x) * normal.x) * a);
     let y2 = keep(keep(normal.y * normal.y) * a);
-    let tangent = vec3<f32>(1.0 + x2, sign * b, -sign * normal.x);
-    return Basis(tangent, vec3<f32>(b, sign + y2, -normal.y), normal);
+    let tangent = vec3<f32>(keep(1.0 + x2), sign * b, -sign * normal.x);
+    return Basis(tangent, vec3<f32>(b, keep(sign + y2), -normal.y), normal);
 }
 
 // A local direction in world axes.

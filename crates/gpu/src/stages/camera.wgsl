@@ -6,17 +6,17 @@ struct CameraRay {
 }
 
 fn camera_ray(place: vec2<f64>, lens: vec2<f64>) -> CameraRay {
-    let across = kept((2.0 * place.x / job.size[0] - 1.0) * job.half_size[0]);
-    let upward = kept((1.0 - 2.0 * place.y / job.size[1]) * job.half_size[1]);
+    let across = kept(kept(2.0 * place.x / job.size[0] - 1.0) * job.half_size[0]);
+    let upward = kept(kept(1.0 - 2.0 * place.y / job.size[1]) * job.half_size[1]);
     let right = vector64(job.right);
     let up = vector64(job.up);
     let offset = kept3(kept3(right * across) + kept3(up * upward));
     var origin = vector64(job.eye);
     var direction = vector64(job.forward);
     if has(ORTHOGRAPHIC) {
-        origin += offset;
+        origin = kept3(origin + offset);
     } else {
-        direction += offset;
+        direction = kept3(direction + offset);
     }
     if has(LENS) {
         let shift = kept3(

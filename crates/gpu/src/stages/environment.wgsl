@@ -7,7 +7,7 @@ fn environment_radiance(direction: vec3<f32>) -> vec3<f32> {
     }
     let products = keep3(vector32(job.toward) * direction);
     let cosine = keep(keep(products.x + products.y) + products.z);
-    return max(middle + scaled(vector32(job.slope), cosine), vec3<f32>(0.0));
+    return max(keep3(middle + scaled(vector32(job.slope), cosine)), vec3<f32>(0.0));
 }
 
 // What the camera sees.

@@ -7,11 +7,11 @@ struct Reflectance {
 }
 
 fn fresnel_dielectric(cosine: f64, eta: f64) -> Reflectance {
-    let sine2 = kept(kept(eta * eta) * kept((1.0 - cosine) * (1.0 + cosine)));
+    let sine2 = kept(kept(eta * eta) * kept(kept(1.0 - cosine) * kept(1.0 + cosine)));
     if !(sine2 < 1.0) {
         return Reflectance(1.0, 0.0);
     }
-    let refracted = sqrt(1.0 - sine2);
+    let refracted = kept(sqrt(1.0 - sine2));
     let arriving = kept(eta * cosine);
     let leaving = kept(eta * refracted);
     let s = (arriving - refracted) / (arriving + refracted);

@@ -18,14 +18,14 @@ const STEPS: u32 = 1024u;
 // The offset from a pixel's center along an axis: `sampling/filter.rs`.
 fn filter_offset(u: f32) -> f32 {
     if !has(FILTER_TABLE) {
-        return u - 0.5;
+        return keep(u - 0.5);
     }
-    let signed = keep(centered(u));
+    let signed = centered(u);
     let w = root(keep(1.0 - abs(signed))) * f32(STEPS);
     let row = min(u32(w), STEPS - 1u);
     let outer = offsets[row];
     let inner = offsets[row + 1u];
-    let offset = outer + keep(keep(inner - outer) * keep(w - f32(row)));
+    let offset = keep(outer + keep(keep(inner - outer) * keep(w - f32(row))));
     return select(offset, -offset, signed < 0.0);
 }
 

@@ -11,9 +11,9 @@ fn cross_ground(origin: vec3<f32>, direction: vec3<f32>, own: u32) -> Crossing {
     }
     let normal = vector64(job.ground_normal);
     let start = vec3<f64>(origin);
-    let above = dot_unfused(normal, start) - job.ground_height;
+    let above = kept(dot_unfused(normal, start) - job.ground_height);
     let descent = -dot_unfused(normal, vec3<f64>(direction));
-    let span = kept(abs(start.x) + abs(start.y)) + abs(start.z);
+    let span = kept(kept(abs(start.x) + abs(start.y)) + abs(start.z));
     let origin_error = kept(span * select(0x1p-23lf, 0.0lf, own == MISS));
     let apart = origin_error < abs(above);
     if descent == 0.0 {

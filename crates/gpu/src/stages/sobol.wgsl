@@ -61,7 +61,7 @@ fn draw4(sequence: Sequence, dimensions: u32) -> vec4<f32> {
     }
     let scramble = DIMENSIONS ^ vec4<u32>((sequence.seed * 0x9c8f2d3bu) ^ dimensions);
     let bits = reverseBits(owen_scramble(sum, hash_words(scramble)));
-    return bitcast<vec4<f32>>((bits >> vec4<u32>(9u)) | vec4<u32>(0x3f800000u)) - 1.0;
+    return keep4(bitcast<vec4<f32>>((bits >> vec4<u32>(9u)) | vec4<u32>(0x3f800000u)) - 1.0);
 }
 
 // The set with lobe and roulette of a bounce.

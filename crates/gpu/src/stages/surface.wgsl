@@ -68,8 +68,8 @@ fn surface_of(row: u32, found: u32) -> Surface {
         }
         surface.hit = GROUND;
         surface.normal = vector64(job.ground_normal);
-        let above = origin + kept3(direction * ground.t);
-        let off = dot_unfused(surface.normal, above) - job.ground_height;
+        let above = kept3(origin + kept3(direction * ground.t));
+        let off = kept(dot_unfused(surface.normal, above) - job.ground_height);
         point = above - kept3(surface.normal * off);
     } else {
         let sphere = sphere_row(found);

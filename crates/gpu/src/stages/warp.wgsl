@@ -5,7 +5,7 @@ const ONE_BELOW: f32 = 1.0 - 0x1p-24f;
 const FRAC_PI_4: f32 = 0x1.921fb6p-1f;
 
 fn centered(u: f32) -> f32 {
-    return 2.0 * u - ONE_BELOW;
+    return keep(2.0 * u - ONE_BELOW);
 }
 
 // Sine and cosine of an angle of at most 45 degrees, in radians.
@@ -14,7 +14,7 @@ fn octant_sine_cosine(angle: f32) -> vec2<f32> {
     let sines = mul_add(mul_add(-1.9515296e-4, s, 8.332161e-3), s, -0.16666655);
     let cosines = mul_add(mul_add(2.4433157e-5, s, -1.3887316e-3), s, 4.1666646e-2);
     let sine = keep(sines * s);
-    let cosine = keep(cosines * s) - 0.5;
+    let cosine = keep(keep(cosines * s) - 0.5);
     return vec2<f32>(mul_add(sine, angle, angle), mul_add(cosine, s, 1.0));
 }
 
@@ -25,8 +25,8 @@ struct DiskPoint {
 }
 
 fn concentric(u: vec2<f32>) -> DiskPoint {
-    let a = keep(centered(u.x));
-    let b = keep(centered(u.y));
+    let a = centered(u.x);
+    let b = centered(u.y);
     let steep = abs(a) < abs(b);
     let longer = select(a, b, steep);
     let shorter = select(b, a, steep);

@@ -10,7 +10,7 @@ use crate::world::{DeviceIntegration, DeviceJob, DeviceRoulette, DeviceSky, Radi
 /// Returns the numbers of a job, or what it has that devices do not do.
 ///
 /// # Errors
-/// A reason, which completes "the processor shades, for".
+/// A reason why devices do not follow paths.
 pub fn device_job<'a>(job: &Job<'a>) -> Result<DeviceJob<'a>, &'static str> {
     let world = job.world;
     let integration = match job.settings.integrator {

@@ -1,19 +1,26 @@
-//! Passes whose paths a device follows, many tiles at once.
+//! Passes whose paths a device follows, many tiles at once, while the processor adds up those of the tiles before.
 
 use super::pass::{PASS, probe_pass, tile_pass, trace_paths};
 use super::watch::Watch;
 use crate::film::{Tile, View};
 use crate::integrator::Job;
 use crate::integrator::clock::Stage;
+use crate::integrator::counters::Counters;
 use crate::integrator::workspace::{BATCH, Workspace};
 use crate::scene::Rgb;
 use crate::world::{DevicePath, DevicePaths};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
-/// Maximum number of paths at once: enough for all lanes of the largest GPUs, and few enough that a render is cancelled
-/// soon.
-const PATHS: usize = 1 << 18;
+/// Numbers of paths at once: the first, and the most. The most is enough for all lanes of the largest GPUs.
+const FEWEST: usize = 1 << 16;
+const MOST: usize = 1 << 20;
+
+/// Devices that follow a batch within this get one of twice as many paths next; few enough that a render is cancelled
+/// soon. The size of batches changes no number.
+const QUICK: Duration = Duration::from_millis(10);
 
 /// A tile, and samples of its pixels that it is to get.
 type Step<'a> = (&'a mut Tile, Range<u32>);
@@ -34,26 +41,69 @@ pub(super) fn run<'a>(
         .filter(|(tile, samples)| tile.view == View::Anything && !samples.is_empty())
         .collect();
     let mut work = Workspace::new(job.world, job.elisions);
-    while !watch.cancelled() {
+    let spares = Spares::default();
+    let mut size = FEWEST;
+    let mut followed: Option<Followed> = None;
+    loop {
+        let next = if watch.cancelled() { None } else { Batch::next(&mut steps, size) };
+        if next.is_none() && followed.is_none() {
+            return;
+        }
+        work.clock.restart();
+        let (after, finished) = rayon::join(
+            || next.map(|batch| batch.follow(device)),
+            || {
+                followed.take().map(|mut followed| {
+                    let counters = followed.add_up(job, probed, &spares);
+                    (followed, counters)
+                })
+            },
+        );
+        work.clock.end(if finished.is_some() { Stage::Film } else { Stage::Trace });
+        if let Some((followed, counters)) = finished {
+            work.counters.add(&counters);
+            let Batch { steps: done, pass, pixels } = followed.batch;
+            report(&mut work, (pixels.len() * pass.len()) as u64);
+            let left = done.into_iter().map(|(tile, samples)| (tile, pass.end..samples.end));
+            steps.extend(left.filter(|(_, samples)| !samples.is_empty()));
+        }
+        followed = after;
+        if followed.as_ref().is_some_and(|followed| followed.elapsed < QUICK) {
+            size = MOST.min(2 * size);
+        }
+    }
+}
+
+/// Tiles of which a device follows the paths at once.
+struct Batch<'a> {
+    steps: Vec<Step<'a>>,
+    /// Samples that all of them get now.
+    pass: Range<u32>,
+    /// The pixels of all tiles.
+    pixels: Vec<(u32, u32)>,
+}
+
+impl<'a> Batch<'a> {
+    /// Takes tiles with about so many paths from those that are left; `None` if none is.
+    fn next(steps: &mut Vec<Step<'a>>, size: usize) -> Option<Self> {
         steps.sort_by_key(|(tile, samples)| (samples.start, samples.end, tile.region.y));
-        let Some(first) = steps.first() else { return };
-        let pass = next_pass(&first.1);
+        let pass = next_pass(&steps.first()?.1);
         let mut paths = 0;
         let fits = |(tile, samples): &&Step| {
             paths += tile.len() as usize * pass.len();
-            paths <= PATHS && next_pass(samples) == pass
+            paths <= size && next_pass(samples) == pass
         };
         let count = steps.iter().take_while(fits).count().max(1);
-        let mut tiles: Vec<&mut Tile> =
-            steps[..count].iter_mut().map(|(tile, _)| &mut **tile).collect();
-        work.clock.restart();
-        let added: u64 = tiles.iter().map(|tile| u64::from(tile.len())).sum();
-        take(job, device, &mut tiles, (&pass, probed), &mut work);
-        report(&mut work, added * pass.len() as u64);
-        for (_, samples) in &mut steps[..count] {
-            samples.start = pass.end;
-        }
-        steps.retain(|(_, samples)| !samples.is_empty());
+        let steps: Vec<Step> = steps.drain(..count).collect();
+        let pixels = steps.iter().flat_map(|(tile, _)| tile.pixels()).collect();
+        Some(Self { steps, pass, pixels })
+    }
+
+    /// Has a device follow the paths.
+    fn follow(self, device: &dyn DevicePaths) -> Followed<'a> {
+        let start = Instant::now();
+        let paths = device.follow(&self.pixels, self.pass.clone());
+        Followed { batch: self, paths, elapsed: start.elapsed() }
     }
 }
 
@@ -63,101 +113,134 @@ fn next_pass(samples: &Range<u32>) -> Range<u32> {
     samples.start..samples.end.min(end)
 }
 
-/// Takes samples of tiles.
-fn take(
-    job: &Job,
-    device: &dyn DevicePaths,
-    tiles: &mut [&mut Tile],
-    (samples, probed): (&Range<u32>, Option<u32>),
-    work: &mut Workspace,
-) {
-    let pixels: Vec<(u32, u32)> = tiles.iter().flat_map(|tile| tile.pixels()).collect();
-    let radiance = device.follow(&pixels, samples.clone()).map(|paths| {
-        count_rays(&paths, work);
-        work.clock.end(Stage::Trace);
-        complete(job, &pixels, samples, &paths, work)
-    });
-    let mut first = 0;
-    let count = samples.len() as u32;
-    let own: Vec<Range<usize>> = tiles
-        .iter()
-        .map(|tile| {
-            let own = first..first + (tile.len() * count) as usize;
-            first = own.end;
-            own
-        })
-        .collect();
-    let counted: Vec<_> = tiles
-        .par_iter_mut()
-        .zip(own)
-        .map_init(
-            || Workspace::new(job.world, job.elisions),
-            |work, (tile, own)| {
-                match &radiance {
-                    Some(radiance) => {
-                        work.counters.bad_samples += tile.add(&radiance[own], count);
-                    }
-                    None => tile_pass(job, &mut [&mut **tile], samples.clone(), work),
+/// A batch whose paths a device has followed.
+struct Followed<'a> {
+    batch: Batch<'a>,
+    /// The paths: for each pixel, one sample after the other. `None` if the device has failed.
+    paths: Option<Vec<DevicePath>>,
+    elapsed: Duration,
+}
+
+impl Followed<'_> {
+    /// Adds the samples to the tiles, and those of probes from `probed` on, if it is given. The processor follows the
+    /// paths that the device does not know. Returns the counts of all tiles.
+    fn add_up(&mut self, job: &Job, probed: Option<u32>, spares: &Spares) -> Counters {
+        let Self { batch: Batch { steps, pass, pixels }, paths, .. } = self;
+        let (pass, pixels, paths) = (&*pass, &*pixels, paths.as_deref());
+        let mut before = 0;
+        let places: Vec<Range<usize>> = steps
+            .iter()
+            .map(|(tile, _)| {
+                let first = before;
+                before += tile.len() as usize;
+                first..before
+            })
+            .collect();
+        let add = |spare: &mut Spare, (tile, own): (&mut Tile, Range<usize>)| {
+            let mut counters = Counters::default();
+            match paths {
+                Some(paths) => {
+                    let paths = &paths[own.start * pass.len()..own.end * pass.len()];
+                    counters = count_rays(paths);
+                    let radiance = complete(job, (&pixels[own], pass), paths, spare);
+                    counters.bad_samples += tile.add(&radiance, pass.len() as u32);
                 }
-                if let Some(from) = probed {
-                    probe_pass(job, &mut [&mut **tile], from..samples.end, work, || true);
-                }
-                std::mem::take(&mut work.counters)
-            },
-        )
-        .collect();
-    for counters in &counted {
-        work.counters.add(counters);
+                None => tile_pass(job, &mut [tile], pass.clone(), spare.get(job)),
+            }
+            if let Some(from) = probed {
+                probe_pass(job, &mut [tile], from..pass.end, spare.get(job), || true);
+            }
+            counters.add(&spare.take_counters());
+            counters
+        };
+        let sum = |mut all: Counters, more: Counters| {
+            all.add(&more);
+            all
+        };
+        steps
+            .par_iter_mut()
+            .zip(places)
+            .map_init(|| Spare::of(spares), |spare, ((tile, _), own)| add(spare, (tile, own)))
+            .reduce(Counters::default, sum)
     }
-    work.clock.end(Stage::Film);
 }
 
 /// Counts the rays of the paths that the device knows.
-fn count_rays(paths: &[DevicePath], work: &mut Workspace) {
+fn count_rays(paths: &[DevicePath]) -> Counters {
+    let mut counters = Counters::default();
     for path in paths.iter().filter(|path| path.radiance().is_some()) {
-        work.counters.camera_rays += 1;
-        work.counters.bounce_rays += path.bounce_rays();
-        work.counters.shadow_rays += path.shadow_rays();
+        counters.camera_rays += 1;
+        counters.bounce_rays += path.bounce_rays();
+        counters.shadow_rays += path.shadow_rays();
     }
+    counters
 }
 
-/// Returns the radiance of paths; the processor follows those that the device does not know.
+/// Returns the radiance of the paths of a tile; the processor follows those that the device does not know.
 fn complete(
     job: &Job,
-    pixels: &[(u32, u32)],
-    samples: &Range<u32>,
+    (pixels, pass): (&[(u32, u32)], &Range<u32>),
     paths: &[DevicePath],
-    work: &mut Workspace,
+    spare: &mut Spare,
 ) -> Vec<Rgb> {
     let mut radiance: Vec<Rgb> =
         paths.iter().map(|path| path.radiance().unwrap_or_default()).collect();
     let mut unknown: Vec<usize> =
         (0..paths.len()).filter(|&path| paths[path].radiance().is_none()).collect();
     // Paths of a batch have the same index among the samples of their pixels.
-    let index = |path: usize| path % samples.len();
+    let index = |path: usize| path % pass.len();
     unknown.sort_unstable_by_key(|&path| (index(path), path));
     let same = |a: &usize, b: &usize| index(*a) == index(*b);
-    let batches: Vec<&[usize]> =
-        unknown.chunk_by(same).flat_map(|paths| paths.chunks(BATCH)).collect();
-    let follow = |work: &mut Workspace, batch: &&[usize]| {
-        let sample = samples.start + index(batch[0]) as u32;
+    for batch in unknown.chunk_by(same).flat_map(|paths| paths.chunks(BATCH)) {
+        let sample = pass.start + index(batch[0]) as u32;
         let pixel = |&path: &usize| {
-            let (x, y) = pixels[path / samples.len()];
+            let (x, y) = pixels[path / pass.len()];
             (x, y, *job.sampler)
         };
         let streams = (batch.iter().map(pixel), sample..sample + 1);
+        let work = spare.get(job);
         trace_paths(job, (View::Anything, std::iter::empty()), streams, work);
-        let followed = work.paths.radiance[..batch.len()].to_vec();
-        (followed, std::mem::take(&mut work.counters))
-    };
-    let followed: Vec<_> = batches
-        .par_iter()
-        .map_init(|| Workspace::new(job.world, job.elisions), |work, batch| follow(work, batch))
-        .collect();
-    for (batch, (followed, counters)) in batches.iter().zip(followed) {
-        batch.iter().zip(followed).for_each(|(&path, found)| radiance[path] = found);
-        work.counters.add(&counters);
+        batch.iter().zip(&work.paths.radiance).for_each(|(&path, &found)| radiance[path] = found);
     }
-    work.clock.end(Stage::Shade);
     radiance
+}
+
+/// Workspaces that no thread uses now.
+#[derive(Default)]
+struct Spares(Mutex<Vec<Workspace>>);
+
+impl Spares {
+    fn all(&self) -> MutexGuard<'_, Vec<Workspace>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// The workspace of a thread, which has one if it needs one.
+struct Spare<'a> {
+    spares: &'a Spares,
+    work: Option<Workspace>,
+}
+
+impl<'a> Spare<'a> {
+    fn of(spares: &'a Spares) -> Self {
+        Self { spares, work: None }
+    }
+
+    fn get(&mut self, job: &Job) -> &mut Workspace {
+        self.work.get_or_insert_with(|| {
+            let spare = self.spares.all().pop();
+            spare.unwrap_or_else(|| Workspace::new(job.world, job.elisions))
+        })
+    }
+
+    /// Returns what was counted since it was last asked.
+    fn take_counters(&mut self) -> Counters {
+        self.work.as_mut().map(|work| std::mem::take(&mut work.counters)).unwrap_or_default()
+    }
+}
+
+impl Drop for Spare<'_> {
+    fn drop(&mut self) {
+        self.spares.all().extend(self.work.take());
+    }
 }

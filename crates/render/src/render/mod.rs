@@ -31,7 +31,7 @@ pub(crate) use incompatible::difference;
 pub use part::ImagePart;
 pub(crate) use pass::view;
 pub use preview::preview;
-pub use resumable::{ResumableRender, shaded_by_the_processor};
+pub use resumable::{ResumableRender, not_followed};
 pub use status::Status;
 pub use tasks::Tasks;
 pub use watch::Totals;

@@ -270,9 +270,8 @@ impl ResumableRender {
     }
 }
 
-/// Returns why a device that traces rays does not follow whole paths of a render, if so: words that complete "the
-/// processor shades, for".
-pub fn shaded_by_the_processor(world: &World, settings: &Settings) -> Option<&'static str> {
+/// Returns why devices do not follow the paths of a render, if so.
+pub fn not_followed(world: &World, settings: &Settings) -> Option<&'static str> {
     with_processor(world, settings, &Options::default(), |job| device_job(job).err())
 }
 

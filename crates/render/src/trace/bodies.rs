@@ -91,7 +91,7 @@ impl<'a> Bodies<'a> {
 
     /// Traces rays among bodies other than spheres, whose hits are known.
     #[inline(always)]
-    pub(super) fn trace_others(self, query: Query, rays: &Rays, hits: &mut Hits) -> u64 {
+    fn trace_others(self, query: Query, rays: &Rays, hits: &mut Hits) -> u64 {
         if self.sticks.is_empty() && self.ellipsoids.is_empty() && self.cones.is_empty() {
             return 0;
         }

@@ -55,8 +55,8 @@ pub use transform::Transform;
 pub use visibility::Visibility;
 
 use crate::body_rows::BodyRow;
+use crate::bvh::Bvh;
 use crate::bvh::builders::Builder;
-use crate::bvh::{Bvh, DeviceTracer};
 use crate::capsules::Capsule;
 use crate::cones::Cone;
 use crate::ellipsoids::Ellipsoid;
@@ -131,9 +131,6 @@ pub struct World {
     /// The camera.
     #[doc(hidden)]
     pub camera: Camera,
-    /// Traces rays in place of the processor, where nothing is sliced.
-    #[doc(hidden)]
-    pub device: Option<Arc<dyn DeviceTracer>>,
     /// Follows whole paths in place of the processor, where it can.
     #[doc(hidden)]
     pub device_paths: Option<Arc<dyn DeviceIntegrator>>,
@@ -292,7 +289,6 @@ impl World {
             light_images: LightImages::default(),
             environment,
             camera,
-            device: None,
             device_paths: None,
             features: Features::default(),
         };
@@ -365,7 +361,6 @@ impl World {
             light_images: LightImages::default(),
             environment: self.environment.clone(),
             camera: self.camera,
-            device: None,
             device_paths: None,
             features,
         }
