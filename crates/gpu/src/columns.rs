@@ -1,9 +1,18 @@
 //! Columns of paths, on a device.
 
-use crate::device::Device;
+use crate::device::{Device, Work, groups};
 use crate::error::DeviceError;
 use crate::tree::Params;
 use wgpu::BufferUsages as Usage;
+
+/// Words of the head of a queue, as `queue.wgsl` describes it.
+const HEAD: usize = 4;
+
+/// Words of a kernel's numbers.
+const PARAMS: usize = size_of::<Params>() / size_of::<u32>();
+
+/// Bounces that a device is asked for at once.
+pub(crate) const BOUNCES: usize = 8;
 
 /// Columns of a batch of paths.
 pub(crate) struct Columns {
@@ -17,16 +26,19 @@ pub(crate) struct Columns {
     pub(crate) states: wgpu::Buffer,
     pub(crate) paths: wgpu::Buffer,
     pub(crate) paths_to_read: wgpu::Buffer,
-    /// The number of paths that go on.
-    pub(crate) alive: wgpu::Buffer,
-    pub(crate) alive_to_read: wgpu::Buffer,
+    /// Queues of the paths of a bounce, and of those that go on.
+    pub(crate) queues: [wgpu::Buffer; 2],
+    pub(crate) head_to_read: wgpu::Buffer,
+    /// The head of a queue without rows.
+    empty_head: wgpu::Buffer,
+    /// Numbers of bounces, of which each gets its own.
+    pub(crate) bounces: wgpu::Buffer,
     pub(crate) shadows: ShadowColumns,
 }
 
 /// Columns of shadow rays.
 pub(crate) struct ShadowColumns {
-    /// The numbers of the kernel that traces them.
-    pub(crate) params: wgpu::Buffer,
+    pub(crate) queue: wgpu::Buffer,
     pub(crate) rays: wgpu::Buffer,
     pub(crate) found: wgpu::Buffer,
     /// The light that they carry.
@@ -44,18 +56,20 @@ impl Columns {
             device.buffer(what, (size_of::<u32>() * words) as u64, usage)
         };
         let column = |what, words| buffer(what, words * paths, Usage::STORAGE | Usage::COPY_SRC);
-        let params = |what| {
-            let bytes = size_of::<Params>() as u64;
-            device.buffer(what, bytes, Usage::STORAGE | Usage::COPY_DST)
+        let queue = |what, rows| {
+            let usage = Usage::STORAGE | Usage::INDIRECT | Usage::COPY_SRC | Usage::COPY_DST;
+            buffer(what, HEAD + rows, usage)
         };
         // Columns without rows cannot be bound.
         let shadow = |what, words, rays: usize| {
             buffer(what, words * if rays > 0 { rays * paths } else { 1 }, Usage::STORAGE)
         };
         let read = Usage::MAP_READ | Usage::COPY_DST;
+        let empty_head = buffer("head of a queue", HEAD, Usage::COPY_SRC | Usage::COPY_DST)?;
+        device.write(&empty_head, bytemuck::bytes_of(&Self::head(0)));
         Ok(Self {
             capacity: [pixels, paths],
-            params: params("numbers")?,
+            params: buffer("numbers", PARAMS, Usage::STORAGE | Usage::COPY_DST)?,
             pixels: buffer("pixels", pixels, Usage::STORAGE | Usage::COPY_DST)?,
             rays: column("rays", 12)?,
             found: column("answers", 1)?,
@@ -63,10 +77,12 @@ impl Columns {
             states: column("states", 4)?,
             paths: column("paths", 4)?,
             paths_to_read: buffer("paths to read", 4 * paths, read)?,
-            alive: buffer("count", 1, Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST)?,
-            alive_to_read: buffer("count to read", 1, read)?,
+            queues: [queue("queue", paths)?, queue("queue", paths)?],
+            head_to_read: buffer("count to read", HEAD, read)?,
+            empty_head,
+            bounces: buffer("bounces", PARAMS * BOUNCES, Usage::COPY_SRC | Usage::COPY_DST)?,
             shadows: ShadowColumns {
-                params: params("numbers of shadow rays")?,
+                queue: queue("queue of shadow rays", shadows.max(1) * paths)?,
                 rays: shadow("shadow rays", 12, shadows)?,
                 found: shadow("answers of shadow rays", 1, shadows)?,
                 // Of ambient occlusion, too.
@@ -78,5 +94,22 @@ impl Columns {
     /// Returns whether so many pixels and paths fit.
     pub(crate) fn fit(&self, pixels: usize, paths: usize) -> bool {
         self.capacity[0] >= pixels && self.capacity[1] >= paths
+    }
+
+    /// Gives kernels the numbers of a bounce, by its place among those that were written, and a queue without shadow rays.
+    pub(crate) fn set_bounce(&self, work: &mut Work, place: usize) {
+        let bytes = self.params.size();
+        work.copy((&self.bounces, bytes * place as u64), &self.params, bytes);
+        self.clear(work, &self.shadows.queue);
+    }
+
+    /// Empties a queue.
+    pub(crate) fn clear(&self, work: &mut Work, queue: &wgpu::Buffer) {
+        work.copy((&self.empty_head, 0), queue, self.empty_head.size());
+    }
+
+    /// Returns the head of a queue with so many rows.
+    pub(crate) fn head(rows: usize) -> [u32; HEAD] {
+        [groups(rows), 1, 1, rows as u32]
     }
 }

@@ -11,7 +11,7 @@ const PATIENCE: Duration = Duration::from_secs(120);
 
 /// Storage buffers that the kernels of queries bind at once, and those of paths.
 const STORAGE_BUFFERS: u32 = 8;
-const PATH_BUFFERS: u32 = 17;
+const PATH_BUFFERS: u32 = 19;
 
 /// What kernels of paths need beside: double precision, and its bits as integers.
 const FOR_PATHS: wgpu::Features = wgpu::Features::SHADER_F64.union(wgpu::Features::SHADER_INT64);
@@ -77,6 +77,8 @@ impl Adapters {
     pub fn find() -> Self {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
         descriptor.backends = wgpu::Backends::PRIMARY;
+        // Kernels of this crate write the sizes of others, and no larger ones than were dispatched before.
+        descriptor.flags.remove(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
         let instance = wgpu::Instance::new(descriptor);
         let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
         let rank = |adapter: &wgpu::Adapter| match adapter.get_info().device_type {
@@ -320,22 +322,30 @@ impl Device {
         })
     }
 
-    /// Asks for a kernel over these buffers to be run.
+    /// Returns a list of work, to which kernels and copies are added.
+    pub(crate) fn work(&self) -> Work<'_> {
+        let descriptor = wgpu::CommandEncoderDescriptor::default();
+        Work { device: self, encoder: self.handle.create_command_encoder(&descriptor) }
+    }
+
+    /// Asks for a kernel over these buffers to be run for so many rows.
     pub(crate) fn run(
         &self,
         kernel: Kernel,
         buffers: &[&wgpu::Buffer],
-        invocations: usize,
+        rows: usize,
     ) -> Result<(), DeviceError> {
-        let kernel = self.compiled(kernel)?;
-        let group = self.bind(kernel, buffers);
-        self.submit(|encoder| pass(encoder, (kernel, &group), invocations, None));
+        let mut work = self.work();
+        work.run(kernel, buffers, Size::Rows(rows))?;
+        work.submit();
         Ok(())
     }
 
     /// Asks for the first bytes of a buffer to be copied to another.
     pub(crate) fn copy(&self, from: &wgpu::Buffer, to: &wgpu::Buffer, bytes: u64) {
-        self.submit(|encoder| encoder.copy_buffer_to_buffer(from, 0, to, 0, bytes));
+        let mut work = self.work();
+        work.copy((from, 0), to, bytes);
+        work.submit();
     }
 
     fn submit(&self, record: impl FnOnce(&mut wgpu::CommandEncoder)) {
@@ -353,7 +363,7 @@ impl Device {
         (from, to, bytes): (&wgpu::Buffer, &wgpu::Buffer, u64),
     ) {
         self.submit(|encoder| {
-            pass(encoder, (kernel, group), invocations, None);
+            pass(encoder, (kernel, group), Size::Rows(invocations), None);
             encoder.copy_buffer_to_buffer(from, 0, to, 0, bytes);
         });
     }
@@ -379,7 +389,7 @@ impl Device {
         let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
         let copy = self.buffer("ticks to read", BYTES, usage)?;
         self.submit(|encoder| {
-            pass(encoder, (kernel, group), invocations, Some(&set));
+            pass(encoder, (kernel, group), Size::Rows(invocations), Some(&set));
             encoder.resolve_query_set(&set, 0..2, &ticks, 0);
             encoder.copy_buffer_to_buffer(&ticks, 0, &copy, 0, BYTES);
         });
@@ -440,12 +450,62 @@ impl std::fmt::Debug for Device {
     }
 }
 
+/// Rows that a kernel runs for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Size<'a> {
+    /// So many.
+    Rows(usize),
+    /// Those in a queue, as `queue.wgsl` describes it.
+    Queue(&'a wgpu::Buffer),
+}
+
+/// Work for a device, in order.
+pub(crate) struct Work<'a> {
+    device: &'a Device,
+    encoder: wgpu::CommandEncoder,
+}
+
+impl Work<'_> {
+    /// Adds a kernel over these buffers.
+    pub(crate) fn run(
+        &mut self,
+        kernel: Kernel,
+        buffers: &[&wgpu::Buffer],
+        size: Size,
+    ) -> Result<(), DeviceError> {
+        let kernel = self.device.compiled(kernel)?;
+        let group = self.device.bind(kernel, buffers);
+        pass(&mut self.encoder, (kernel, &group), size, None);
+        Ok(())
+    }
+
+    /// Adds a copy of bytes of a buffer, from an offset on, to the start of another.
+    pub(crate) fn copy(
+        &mut self,
+        (from, offset): (&wgpu::Buffer, u64),
+        to: &wgpu::Buffer,
+        bytes: u64,
+    ) {
+        self.encoder.copy_buffer_to_buffer(from, offset, to, 0, bytes);
+    }
+
+    /// Asks for all of it.
+    pub(crate) fn submit(self) {
+        self.device.queue.submit([self.encoder.finish()]);
+    }
+}
+
+/// Returns the number of groups of 64 invocations for so many rows.
+pub(crate) fn groups(rows: usize) -> u32 {
+    rows.div_ceil(64) as u32
+}
+
 /// Adds a kernel in groups of 64 invocations to what is asked for, and has its start and end written if there is a
 /// place for them.
 fn pass(
     encoder: &mut wgpu::CommandEncoder,
     (kernel, group): (&wgpu::ComputePipeline, &wgpu::BindGroup),
-    invocations: usize,
+    size: Size,
     ticks: Option<&wgpu::QuerySet>,
 ) {
     let timestamp_writes = ticks.map(|query_set| wgpu::ComputePassTimestampWrites {
@@ -457,7 +517,10 @@ fn pass(
         encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
     pass.set_pipeline(kernel);
     pass.set_bind_group(0, group, &[]);
-    pass.dispatch_workgroups(invocations.div_ceil(64) as u32, 1, 1);
+    match size {
+        Size::Rows(rows) => pass.dispatch_workgroups(groups(rows), 1, 1),
+        Size::Queue(queue) => pass.dispatch_workgroups_indirect(queue, 0),
+    }
 }
 
 /// The first line of a message, or something in its place.

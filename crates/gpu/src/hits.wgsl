@@ -331,8 +331,8 @@ fn largest(v: vec3<u32>) -> u32 {
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let row = id.x;
-    if row >= params.count {
+    let row = row_of(id.x);
+    if row == NO_ROW {
         return;
     }
     let first = rays[3u * row];

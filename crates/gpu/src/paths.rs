@@ -1,7 +1,7 @@
 //! Paths that a device follows from the camera to their ends, with the processor's numbers.
 
-use crate::columns::Columns;
-use crate::device::Device;
+use crate::columns::{BOUNCES, Columns};
+use crate::device::{Device, Size, Work};
 use crate::error::DeviceError;
 use crate::job::JobNumbers;
 use crate::materials;
@@ -88,20 +88,26 @@ impl Integrator {
         samples: &Range<u32>,
     ) -> Result<FirstStages, DeviceError> {
         let paths = JobPaths::new(self, job)?;
+        let device = paths.device();
         let count = pixels.len() * samples.len();
-        let columns = Columns::new(paths.device(), [pixels.len(), count], paths.shadows())?;
-        paths.set_params(&columns, &paths.begin(&columns, pixels, samples));
-        let stage = |kernel| paths.stage(kernel, &columns, count);
-        stage(Kernel::Generate)?;
-        let camera_rays = read_column(paths.device(), &columns.rays, count)?;
-        let sequences = read_column(paths.device(), &columns.sequences, count)?;
-        stage(self.tree.hits(false, false))?;
-        let found = read_column(paths.device(), &columns.found, count)?;
-        stage(match job.integration {
-            DeviceIntegration::Occlusion { .. } => Kernel::Occlusion,
-            DeviceIntegration::Paths { .. } => Kernel::Path,
-        })?;
-        let next_rays = read_column(paths.device(), &columns.rays, count)?;
+        let columns = Columns::new(device, [pixels.len(), count], paths.shadows())?;
+        paths.begin(&columns, pixels, samples);
+        let stage = |stage| {
+            let mut work = device.work();
+            paths.stage(&mut work, stage, &columns, 0)?;
+            work.submit();
+            Ok(())
+        };
+        let mut work = device.work();
+        columns.set_bounce(&mut work, 0);
+        work.submit();
+        stage(Stage::Generate(count))?;
+        let camera_rays = read_column(device, &columns.rays, count)?;
+        let sequences = read_column(device, &columns.sequences, count)?;
+        stage(Stage::FirstHits)?;
+        let found = read_column(device, &columns.found, count)?;
+        stage(Stage::Surfaces)?;
+        let next_rays = read_column(device, &columns.rays, count)?;
         Ok(FirstStages { camera_rays, sequences, found, next_rays })
     }
 }
@@ -166,7 +172,8 @@ impl JobPaths {
             Some(columns) => columns,
             None => Columns::new(device, [pixels.len(), count], self.shadows())?,
         };
-        self.follow_all(&columns, self.begin(&columns, pixels, samples))?;
+        let params = self.begin(&columns, pixels, samples);
+        self.follow_all(&columns, params)?;
         let bytes = size_of_val(&*answers) as u64;
         device.copy(&columns.paths, &columns.paths_to_read, bytes);
         device.read(&columns.paths_to_read, bytes, |view| {
@@ -177,16 +184,28 @@ impl JobPaths {
         Ok(answers)
     }
 
-    /// Writes the pixels of a batch; returns its numbers.
+    /// Writes the pixels of a batch, the queue of all its paths and the numbers of its first bounces; returns those of the
+    /// first.
     fn begin(&self, columns: &Columns, pixels: &[(u32, u32)], samples: &Range<u32>) -> Params {
         let words: Vec<u32> = pixels.iter().map(|&(x, y)| x | y << 16).collect();
         self.device().write(&columns.pixels, bytemuck::cast_slice(&words));
-        Params {
+        let count = pixels.len() * samples.len();
+        self.device().write(&columns.queues[0], bytemuck::bytes_of(&Columns::head(count)));
+        let params = Params {
             first_sample: samples.start,
             samples: samples.len() as u32,
             shadows: self.shadows().max(1) as u32,
-            ..self.tree.params(pixels.len() * samples.len())
-        }
+            ..self.tree.params(count)
+        };
+        self.write_bounces(columns, &params);
+        params
+    }
+
+    /// Writes the numbers of bounces, from that of `params` on.
+    fn write_bounces(&self, columns: &Columns, params: &Params) {
+        let bounces = (params.bounce..).take(BOUNCES);
+        let rows: Vec<Params> = bounces.map(|bounce| Params { bounce, ..*params }).collect();
+        self.device().write(&columns.bounces, bytemuck::cast_slice(&rows));
     }
 
     /// Returns the shadow rays of a path at each bounce; 0 if there are none beside the path's own rays.
@@ -199,100 +218,122 @@ impl JobPaths {
         }
     }
 
-    /// Writes the numbers of a batch.
-    fn set_params(&self, columns: &Columns, params: &Params) {
-        self.device().write(&columns.params, bytemuck::bytes_of(params));
-        let count = params.count * params.shadows;
-        self.device()
-            .write(&columns.shadows.params, bytemuck::bytes_of(&Params { count, ..*params }));
-    }
-
-    /// Runs a stage of all paths of a batch.
-    fn stage(&self, kernel: Kernel, columns: &Columns, count: usize) -> Result<(), DeviceError> {
-        let Columns { params, pixels, rays, found, sequences, states, paths, alive, .. } = columns;
+    /// Adds a stage of the paths in a queue, by its place, to the work.
+    fn stage(
+        &self,
+        work: &mut Work,
+        stage: Stage,
+        columns: &Columns,
+        queue: usize,
+    ) -> Result<(), DeviceError> {
+        let Columns { params, pixels, rays, found, sequences, states, paths, queues, .. } = columns;
         let Self { numbers, sobol, offsets, appearance, materials, .. } = self;
         let shadows = &columns.shadows;
         // Shadow rays are the paths' own where no others follow.
-        let apart = kernel.is_any() && self.shadows() > 0;
-        let mut buffers = vec![if apart { &shadows.params } else { params }];
-        let spheres = self.tree.spheres();
-        match kernel {
-            Kernel::Hits { .. } => {
-                buffers.push(self.tree.nodes());
-                buffers.extend(spheres);
-                buffers.extend(if apart { [&shadows.rays, &shadows.found] } else { [rays, found] });
-            }
-            Kernel::Generate => {
+        let [shadow_rays, shadow_found] =
+            if self.shadows() > 0 { [&shadows.rays, &shadows.found] } else { [rays, found] };
+        let [queue, next] = [&queues[queue], &queues[1 - queue]];
+        let mut size = Size::Queue(queue);
+        let mut buffers = vec![params];
+        let kernel = match stage {
+            Stage::Generate(count) => {
                 buffers.extend([numbers, pixels, sobol, offsets, rays, sequences, states, paths]);
+                buffers.push(queue);
+                size = Size::Rows(count);
+                Kernel::Generate
             }
-            Kernel::Occlusion | Kernel::Path => {
+            Stage::FirstHits => {
+                buffers.push(self.tree.nodes());
+                buffers.extend(self.tree.spheres());
+                buffers.extend([rays, found, queue]);
+                self.tree.queued_hits(false)
+            }
+            Stage::Surfaces => {
                 buffers.push(numbers);
-                buffers.extend(spheres);
+                buffers.extend(self.tree.spheres());
                 buffers.extend([appearance, materials, sobol, sequences, found, rays]);
-                if kernel == Kernel::Path {
-                    buffers.extend([states, paths, alive, &shadows.rays, &shadows.lights]);
+                if let DeviceIntegration::Occlusion { .. } = self.integration {
+                    buffers.extend([&shadows.lights, paths, queue, &shadows.queue]);
+                    Kernel::Occlusion
                 } else {
-                    buffers.extend([&shadows.lights, paths]);
+                    buffers.extend([states, paths, &shadows.rays, &shadows.lights]);
+                    buffers.extend([queue, next, &shadows.queue]);
+                    Kernel::Path
                 }
             }
-            Kernel::Shadows => {
-                let [rays, found] = if self.shadows() > 0 {
-                    [&shadows.rays, &shadows.found]
-                } else {
-                    [rays, found]
-                };
-                buffers.extend([rays, &shadows.lights, found, paths]);
+            Stage::ShadowHits => {
+                buffers.push(self.tree.nodes());
+                buffers.extend(self.tree.spheres());
+                buffers.extend([shadow_rays, shadow_found, &shadows.queue]);
+                size = Size::Queue(&shadows.queue);
+                self.tree.queued_hits(true)
             }
-            // No stage of paths.
-            Kernel::Doubles => {}
-        }
-        let rows = if apart { count * self.shadows() } else { count };
-        self.device().run(kernel, &buffers, rows)
+            Stage::Shadows => {
+                buffers.extend([shadow_rays, &shadows.lights, shadow_found, paths, queue]);
+                Kernel::Shadows
+            }
+        };
+        work.run(kernel, &buffers, size)
     }
 
     /// Runs the stages of all paths of a batch.
-    fn follow_all(&self, columns: &Columns, params: Params) -> Result<(), DeviceError> {
-        let [first_hits, any_hits] = [false, true].map(|any| self.tree.hits(any, false));
+    fn follow_all(&self, columns: &Columns, mut params: Params) -> Result<(), DeviceError> {
         let device = self.device();
-        let stage = |kernel| self.stage(kernel, columns, params.count as usize);
-        self.set_params(columns, &params);
-        stage(Kernel::Generate)?;
-        if let DeviceIntegration::Occlusion { .. } = self.integration {
-            stage(first_hits)?;
-            stage(Kernel::Occlusion)?;
-            stage(any_hits)?;
-            return stage(Kernel::Shadows);
-        }
-        for bounce in 0.. {
-            self.set_params(columns, &Params { bounce, ..params });
-            device.write(&columns.alive, &0_u32.to_ne_bytes());
-            stage(first_hits)?;
-            stage(Kernel::Path)?;
-            if self.shadows() > 0 {
-                stage(any_hits)?;
-                stage(Kernel::Shadows)?;
+        let (depth, has_shadows) = match self.integration {
+            DeviceIntegration::Occlusion { .. } => (0, true),
+            DeviceIntegration::Paths { depth, .. } => (depth, self.shadows() > 0),
+        };
+        let mut queue = 0;
+        loop {
+            let mut work = device.work();
+            if params.bounce == 0 {
+                columns.set_bounce(&mut work, 0);
+                self.stage(&mut work, Stage::Generate(params.count as usize), columns, queue)?;
             }
-            if !is_counted(bounce) {
-                continue;
+            let bounces = BOUNCES.min((depth - params.bounce) as usize + 1);
+            for place in 0..bounces {
+                columns.set_bounce(&mut work, place);
+                columns.clear(&mut work, &columns.queues[1 - queue]);
+                self.stage(&mut work, Stage::FirstHits, columns, queue)?;
+                self.stage(&mut work, Stage::Surfaces, columns, queue)?;
+                if has_shadows {
+                    self.stage(&mut work, Stage::ShadowHits, columns, queue)?;
+                    self.stage(&mut work, Stage::Shadows, columns, queue)?;
+                }
+                queue = 1 - queue;
             }
-            let mut left = 0_u32;
-            let bytes = size_of_val(&left) as u64;
-            device.copy(&columns.alive, &columns.alive_to_read, bytes);
-            device.read(&columns.alive_to_read, bytes, |view| {
-                left = bytemuck::pod_read_unaligned(view);
+            let bytes = columns.head_to_read.size();
+            work.copy((&columns.queues[queue], 0), &columns.head_to_read, bytes);
+            work.submit();
+            if depth - params.bounce < BOUNCES as u32 {
+                return Ok(());
+            }
+            params.bounce += BOUNCES as u32;
+            let mut head = Columns::head(0);
+            device.read(&columns.head_to_read, bytes, |view| {
+                head = bytemuck::pod_read_unaligned(view);
             })?;
-            if left == 0 {
-                break;
+            if head == Columns::head(0) {
+                return Ok(());
             }
+            self.write_bounces(columns, &params);
         }
-        Ok(())
     }
 }
 
-/// Returns whether the paths that go on after a bounce are counted, for which the device is waited for. A bounce without
-/// any takes it less time.
-fn is_counted(bounce: u32) -> bool {
-    bounce == 0 || bounce % 4 == 3
+/// A stage of all paths of a batch.
+#[derive(Clone, Copy, Debug)]
+enum Stage {
+    /// Camera rays of so many paths.
+    Generate(usize),
+    /// First hits of the paths' rays.
+    FirstHits,
+    /// Surfaces, light and next rays.
+    Surfaces,
+    /// Whether shadow rays hit anything.
+    ShadowHits,
+    /// Light of shadow rays.
+    Shadows,
 }
 
 impl DevicePaths for JobPaths {

@@ -3,12 +3,18 @@
 use crate::device::Device;
 use crate::error::DeviceError;
 
+/// Rays in a queue, and the queue.
+const QUEUED_RAYS: &str = concat!(
+    "@group(0) @binding(8) var<storage, read> queue: array<u32>;\n",
+    include_str!("stages/queue.wgsl")
+);
+
 /// A kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kernel {
     /// Hits of rays: the first, or any if `any`; or, if `counts`, the visits of the search. Spheres may be `cut` into
-    /// several columns.
-    Hits { any: bool, counts: bool, cut: bool },
+    /// several columns. The rays are those in a queue if `queued`, else all.
+    Hits { any: bool, counts: bool, cut: bool, queued: bool },
     /// The test of double precision.
     Doubles,
     /// Camera rays.
@@ -23,19 +29,19 @@ pub(crate) enum Kernel {
 
 impl Kernel {
     /// The number of kernels.
-    pub(crate) const COUNT: usize = 13;
+    pub(crate) const COUNT: usize = 21;
 
     /// Returns its place among all kernels.
     pub(crate) fn place(self) -> usize {
         match self {
-            Self::Hits { any, counts, cut } => {
-                usize::from(any) + 2 * usize::from(counts) + 4 * usize::from(cut)
+            Self::Hits { any, counts, cut, queued } => {
+                [any, counts, cut, queued].iter().fold(0, |place, &is| 2 * place + usize::from(is))
             }
-            Self::Generate => 8,
-            Self::Occlusion => 9,
-            Self::Shadows => 10,
-            Self::Path => 11,
-            Self::Doubles => 12,
+            Self::Generate => 16,
+            Self::Occlusion => 17,
+            Self::Shadows => 18,
+            Self::Path => 19,
+            Self::Doubles => 20,
         }
     }
 
@@ -48,7 +54,7 @@ impl Kernel {
     pub(crate) fn compile(self, device: &Device) -> Result<wgpu::ComputePipeline, DeviceError> {
         let (name, files) = self.files();
         let constants: &[(&str, f64)] = match self {
-            Self::Hits { any, counts, cut } => &[("ANY", any), ("COUNT", counts), ("CUT", cut)]
+            Self::Hits { any, counts, cut, .. } => &[("ANY", any), ("COUNT", counts), ("CUT", cut)]
                 .map(|(name, is)| (name, u8::from(is).into())),
             _ => &[],
         };
@@ -61,6 +67,8 @@ impl Kernel {
         const SPHERES: &str = include_str!("stages/spheres.wgsl");
         const RAYS: &str = include_str!("stages/rays.wgsl");
         const PATH_STATE: &str = include_str!("stages/path_state.wgsl");
+        const QUEUE: &str = include_str!("stages/queue.wgsl");
+        const SHADOW_RAYS: &str = include_str!("stages/shadow_rays.wgsl");
         // What paths need of a job, its arithmetic and its samples.
         const JOB: [&str; 7] = [
             PARAMS,
@@ -87,9 +95,11 @@ impl Kernel {
             include_str!("stages/plastic.wgsl"),
             include_str!("stages/reflective.wgsl"),
         ];
-        const PATH: [&str; 6] = [
+        const PATH: [&str; 8] = [
             PATH_STATE,
+            QUEUE,
             RAYS,
+            SHADOW_RAYS,
             include_str!("stages/direct_light.wgsl"),
             include_str!("stages/emission.wgsl"),
             include_str!("stages/roulette.wgsl"),
@@ -97,7 +107,10 @@ impl Kernel {
         ];
         let of = |groups: &[&[&'static str]]| groups.concat();
         match self {
-            Self::Hits { .. } => ("hits", vec![PARAMS, SPHERES, include_str!("hits.wgsl")]),
+            Self::Hits { queued, .. } => {
+                let rows = if queued { QUEUED_RAYS } else { include_str!("stages/all_rows.wgsl") };
+                ("hits", vec![PARAMS, rows, SPHERES, include_str!("hits.wgsl")])
+            }
             Self::Doubles => {
                 let arithmetic = include_str!("stages/arithmetic.wgsl");
                 ("doubles", vec![PARAMS, arithmetic, include_str!("doubles.wgsl")])
@@ -108,11 +121,12 @@ impl Kernel {
                 ("generate", of(&[&JOB, &[PATH_STATE, RAYS, camera, generate]]))
             }
             Self::Occlusion => {
-                ("ao", of(&[&JOB, &SURFACE, &[RAYS, include_str!("stages/ao.wgsl")]]))
+                let ao = include_str!("stages/ao.wgsl");
+                ("ao", of(&[&JOB, &SURFACE, &[QUEUE, RAYS, SHADOW_RAYS, ao]]))
             }
             Self::Shadows => {
                 let shadows = include_str!("stages/shadow_queue.wgsl");
-                ("shadow_queue", vec![PARAMS, RAYS, shadows])
+                ("shadow_queue", vec![PARAMS, QUEUE, RAYS, shadows])
             }
             Self::Path => ("path", of(&[&JOB, &SURFACE, &BSDFS, &PATH])),
         }

@@ -202,7 +202,12 @@ impl DeviceTree {
 
     /// Returns the kernel that searches this tree: for any hit if `any`, and for the visits of it if `counts`.
     pub(crate) fn hits(&self, any: bool, counts: bool) -> Kernel {
-        Kernel::Hits { any, counts, cut: self.is_cut }
+        Kernel::Hits { any, counts, cut: self.is_cut, queued: false }
+    }
+
+    /// Returns the kernel that searches this tree for rays in a queue.
+    pub(crate) fn queued_hits(&self, any: bool) -> Kernel {
+        Kernel::Hits { any, counts: false, cut: self.is_cut, queued: true }
     }
 
     /// Returns whether single precision holds the spheres.

@@ -222,11 +222,8 @@ fn compare(
     }
 }
 
-/// The scenes of images; none if scenes of rays were chosen.
+/// The scenes of images, of the sets of spheres that were chosen.
 fn pictures(options: &Options) -> Result<Vec<NamedScene>, BenchError> {
-    if !options.scenes.is_empty() {
-        return Ok(Vec::new());
-    }
     let width = options.pick([24, 96, 512]);
     let mut occlusion = NamedScene::named(FIELD)?.resized(width);
     occlusion.name = format!("{FIELD}, ambient occlusion");
@@ -248,7 +245,12 @@ fn pictures(options: &Options) -> Result<Vec<NamedScene>, BenchError> {
     for row in &mut chalk.scene.materials {
         row.material = Material::Lambertian { color: Rgb::ONE };
     }
-    Ok(vec![occlusion, volume, chalk])
+    let mut all = vec![occlusion, volume, chalk];
+    all.retain(|scene| {
+        let is_of = |set: &String| scene.name.starts_with(&format!("{set}, "));
+        options.scenes.is_empty() || options.scenes.iter().any(is_of)
+    });
+    Ok(all)
 }
 
 fn measure_images(
@@ -256,9 +258,9 @@ fn measure_images(
     (options, progress): (&Options, Progress),
 ) -> Result<Vec<ImageOutcome>, BenchError> {
     let own = scene.world()?;
-    let samples = options.pick([32, 256, 4096]);
+    let samples = options.pick([32, 256, 1024]);
     progress(&format!("gpu: {}, reference of 2 x {samples} samples per pixel", scene.name));
-    let reference = Reference::new(scene, &own, samples, None)?;
+    let reference = Reference::new(scene, &own, samples, options.references.as_deref())?;
     let mut other = scene.world()?;
     let device = devices::Attached::to(&mut other, &scene.scene.settings, Choice::Gpu);
     if let Some(why) = device.refusal() {

@@ -14,11 +14,13 @@
 @group(0) @binding(11) var<storage, read_write> rays: array<vec4<u32>>;
 @group(0) @binding(12) var<storage, read_write> lights: array<vec4<f32>>;
 @group(0) @binding(13) var<storage, read_write> paths: array<vec4<u32>>;
+@group(0) @binding(14) var<storage, read> queue: array<u32>;
+@group(0) @binding(15) var<storage, read_write> shadow_queue: array<atomic<u32>>;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let path = id.x;
-    if path >= params.count {
+    let path = row_of(id.x);
+    if path == NO_ROW {
         return;
     }
     let surface = surface_of(path, found[path]);
@@ -49,4 +51,5 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     write_ray(path, surface.point, direction, surface.hit, bounds_around(job.distance));
+    queue_shadow_ray(path);
 }

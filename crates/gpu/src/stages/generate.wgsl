@@ -12,6 +12,8 @@
 @group(0) @binding(7) var<storage, read_write> states: array<PathState>;
 // Radiance, in bits; and a word that says whether it is unknown, and counts rays.
 @group(0) @binding(8) var<storage, read_write> paths: array<vec4<u32>>;
+// The queue of all paths.
+@group(0) @binding(9) var<storage, read_write> queue: array<u32>;
 
 const STEPS: u32 = 1024u;
 
@@ -59,4 +61,5 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     write_ray(path, origin, direction, MISS, bounds);
     states[path] = PathState(vec3<f32>(1.0), CAMERA);
     paths[path] = vec4<u32>(0u);
+    queue[QUEUE_HEAD + path] = path;
 }

@@ -20,6 +20,12 @@ struct Params {
 // Not a uniform buffer: drivers may compile kernels anew for its values, and then they know the 0.
 @group(0) @binding(0) var<storage, read> params: Params;
 
+// In place of a row.
+const NO_ROW: u32 = 0xffffffffu;
+
+// Words before the rows of a queue.
+const QUEUE_HEAD: u32 = 4u;
+
 const MISS: u32 = 0xffffffffu;
 const GROUND: u32 = 0xfffffffeu;
 const UNKNOWN: u32 = 0xfffffffdu;

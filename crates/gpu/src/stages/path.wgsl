@@ -14,10 +14,20 @@
 @group(0) @binding(11) var<storage, read_write> rays: array<vec4<u32>>;
 @group(0) @binding(12) var<storage, read_write> states: array<PathState>;
 @group(0) @binding(13) var<storage, read_write> paths: array<vec4<u32>>;
-// The number of paths that go on.
-@group(0) @binding(14) var<storage, read_write> alive: atomic<u32>;
-@group(0) @binding(15) var<storage, read_write> shadow_rays: array<vec4<u32>>;
-@group(0) @binding(16) var<storage, read_write> lights: array<vec4<f32>>;
+@group(0) @binding(14) var<storage, read_write> shadow_rays: array<vec4<u32>>;
+@group(0) @binding(15) var<storage, read_write> lights: array<vec4<f32>>;
+@group(0) @binding(16) var<storage, read> queue: array<u32>;
+// Paths that go on.
+@group(0) @binding(17) var<storage, read_write> next_queue: array<atomic<u32>>;
+@group(0) @binding(18) var<storage, read_write> shadow_queue: array<atomic<u32>>;
+
+fn go_on(path: u32) {
+    let place = atomicAdd(&next_queue[3], 1u);
+    if place % 64u == 0u {
+        atomicAdd(&next_queue[0], 1u);
+    }
+    atomicStore(&next_queue[QUEUE_HEAD + place], path);
+}
 
 // A shadow ray to infinity, with the light that it carries. The ground may be in between.
 fn write_shadow_ray(path: u32, slot: u32, surface: ptr<function, Surface>, direction: vec3<f32>, light: vec3<f32>) {
@@ -32,6 +42,7 @@ fn write_shadow_ray(path: u32, slot: u32, surface: ptr<function, Surface>, direc
     shadow_rays[3u * row + 1u] = vec4<u32>(toward.yz, (*surface).hit, MISS);
     shadow_rays[3u * row + 2u] = vec4<u32>(bitcast<vec2<u32>>(vec2<f32>(FAR)), 0u, 0u);
     lights[row] = vec4<f32>(light, 0.0);
+    queue_shadow_ray(row);
 }
 
 fn clear_shadow_rays(path: u32) {
@@ -43,14 +54,11 @@ fn clear_shadow_rays(path: u32) {
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let path = id.x;
-    if path >= params.count {
+    let path = row_of(id.x);
+    if path == NO_ROW {
         return;
     }
     clear_shadow_rays(path);
-    if is_ended(path) {
-        return;
-    }
     var surface = surface_of(path, found[path]);
     let state = states[path];
     let cut = params.bounce == job.depth;
@@ -59,16 +67,13 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         let light = keep3(state.throughput * escaped_light(ray_direction(path), state.previous));
         let radiance = keep3(bitcast<vec3<f32>>(paths[path].xyz) + light);
         paths[path] = vec4<u32>(bitcast<vec3<u32>>(radiance), paths[path].w);
-        end_ray(path);
         return;
     }
     if !known || surface.inside || (!cut && lights_set(params.bounce) >= SETS) {
         paths[path].w |= 1u;
-        end_ray(path);
         return;
     }
     if cut {
-        end_ray(path);
         return;
     }
     let sequence = sequences[path];
@@ -109,7 +114,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let greatest = greatest_of(throughput);
     let survival = survival_probability(greatest);
     if !(choice.y < survival && 0.0 < greatest) {
-        end_ray(path);
         return;
     }
     var previous = next_bounce(state.previous, scatter.pdf, is_diffuse(&bsdf));
@@ -132,5 +136,5 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     write_ray(path, surface.point, direction, surface.hit, bounds);
     paths[path].w += BOUNCE_RAY;
-    atomicAdd(&alive, 1u);
+    go_on(path);
 }

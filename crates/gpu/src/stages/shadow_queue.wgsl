@@ -4,11 +4,12 @@
 @group(0) @binding(2) var<storage, read> lights: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> found: array<u32>;
 @group(0) @binding(4) var<storage, read_write> paths: array<vec4<u32>>;
+@group(0) @binding(5) var<storage, read> queue: array<u32>;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let path = id.x;
-    if path >= params.count {
+    let path = row_of(id.x);
+    if path == NO_ROW {
         return;
     }
     var radiance = bitcast<vec3<f32>>(paths[path].xyz);
