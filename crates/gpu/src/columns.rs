@@ -3,10 +3,14 @@
 use crate::device::{Device, Work, groups};
 use crate::error::DeviceError;
 use crate::tree::Params;
+use spherule_render::world::DevicePixel;
 use wgpu::BufferUsages as Usage;
 
 /// Words of the head of a queue, as `queue.wgsl` describes it.
 const HEAD: usize = 4;
+
+/// Words of the sums of a pixel.
+const SUMS: usize = size_of::<DevicePixel>() / size_of::<u32>();
 
 /// Words of a kernel's numbers.
 const PARAMS: usize = size_of::<Params>() / size_of::<u32>();
@@ -25,7 +29,12 @@ pub(crate) struct Columns {
     pub(crate) sequences: wgpu::Buffer,
     pub(crate) states: wgpu::Buffer,
     pub(crate) paths: wgpu::Buffer,
-    pub(crate) paths_to_read: wgpu::Buffer,
+    /// Sums of pixels, and the samples of those that are not summed, with the number of these pixels.
+    pub(crate) pixel_sums: wgpu::Buffer,
+    pub(crate) pixel_sums_to_read: wgpu::Buffer,
+    pub(crate) samples: wgpu::Buffer,
+    pub(crate) samples_to_read: wgpu::Buffer,
+    pub(crate) unsummed: wgpu::Buffer,
     /// Queues of the paths of a bounce, and of those that go on.
     pub(crate) queues: [wgpu::Buffer; 2],
     pub(crate) head_to_read: wgpu::Buffer,
@@ -75,8 +84,12 @@ impl Columns {
             found: column("answers", 1)?,
             sequences: column("samples", 2)?,
             states: column("states", 4)?,
-            paths: column("paths", 4)?,
-            paths_to_read: buffer("paths to read", 4 * paths, read)?,
+            paths: buffer("paths", 4 * paths, Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST)?,
+            pixel_sums: buffer("sums", SUMS * pixels, Usage::STORAGE | Usage::COPY_SRC)?,
+            pixel_sums_to_read: buffer("sums to read", SUMS * pixels, read)?,
+            samples: buffer("samples", 4 * paths, Usage::STORAGE | Usage::COPY_SRC)?,
+            samples_to_read: buffer("samples to read", 4 * paths, read)?,
+            unsummed: buffer("number of pixels", 1, Usage::STORAGE | Usage::COPY_DST)?,
             queues: [queue("queue", paths)?, queue("queue", paths)?],
             head_to_read: buffer("count to read", HEAD, read)?,
             empty_head,

@@ -19,6 +19,7 @@ mod bounds;
 mod columns;
 mod device;
 mod error;
+mod film;
 mod job;
 mod materials;
 mod nodes;

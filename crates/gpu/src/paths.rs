@@ -3,6 +3,7 @@
 use crate::columns::{BOUNCES, Columns};
 use crate::device::{Device, Size, Work};
 use crate::error::DeviceError;
+use crate::film;
 use crate::job::JobNumbers;
 use crate::materials;
 use crate::stages::Kernel;
@@ -10,7 +11,7 @@ use crate::tree::{Answered, DeviceTree, Params};
 use bytemuck::Pod;
 use spherule_render::World;
 use spherule_render::world::{
-    DeviceIntegration, DeviceIntegrator, DeviceJob, DevicePath, DevicePaths,
+    DeviceIntegration, DeviceIntegrator, DeviceJob, DevicePaths, DevicePixels,
 };
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -118,11 +119,10 @@ fn read_column<T: Pod>(
     column: &wgpu::Buffer,
     rows: usize,
 ) -> Result<Vec<T>, DeviceError> {
+    let mut read = vec![T::zeroed(); rows];
     let bytes = (size_of::<T>() * rows) as u64;
     let copy = device.buffer("rows to read", bytes, Usage::MAP_READ | Usage::COPY_DST)?;
-    device.copy(column, &copy, bytes);
-    let mut read = vec![T::zeroed(); rows];
-    device.read(&copy, bytes, |view| bytemuck::cast_slice_mut(&mut read).copy_from_slice(view))?;
+    device.read_rows((column, &copy), bytemuck::cast_slice_mut(&mut read))?;
     Ok(read)
 }
 
@@ -154,18 +154,19 @@ impl JobPaths {
         self.tree.device()
     }
 
-    /// Follows paths.
+    /// Follows the paths of samples of pixels, and adds up the samples of each pixel.
     fn run(
         &self,
         pixels: &[(u32, u32)],
         samples: &Range<u32>,
-    ) -> Result<Vec<DevicePath>, DeviceError> {
+        found: &mut DevicePixels,
+    ) -> Result<(), DeviceError> {
         let device = self.device();
         device.check()?;
         let count = pixels.len() * samples.len();
-        let mut answers = vec![DevicePath::default(); count];
         if count == 0 {
-            return Ok(answers);
+            *found = DevicePixels::default();
+            return Ok(());
         }
         let mut kept = self.columns.lock().unwrap_or_else(PoisonError::into_inner);
         let columns = match kept.take().filter(|columns| columns.fit(pixels.len(), count)) {
@@ -174,14 +175,10 @@ impl JobPaths {
         };
         let params = self.begin(&columns, pixels, samples);
         self.follow_all(&columns, params)?;
-        let bytes = size_of_val(&*answers) as u64;
-        device.copy(&columns.paths, &columns.paths_to_read, bytes);
-        device.read(&columns.paths_to_read, bytes, |view| {
-            bytemuck::cast_slice_mut(&mut answers).copy_from_slice(view);
-        })?;
+        film::add_up(device, &columns, [pixels.len(), samples.len()], found)?;
         // Not after a fault: what is left of such buffers is unknown.
         *kept = Some(columns);
-        Ok(answers)
+        Ok(())
     }
 
     /// Writes the pixels of a batch, the queue of all its paths and the numbers of its first bounces; returns those of the
@@ -337,15 +334,20 @@ enum Stage {
 }
 
 impl DevicePaths for JobPaths {
-    fn follow(&self, pixels: &[(u32, u32)], samples: Range<u32>) -> Option<Vec<DevicePath>> {
-        let paths = self.run(pixels, &samples).map_err(|error| self.device().fail(error)).ok()?;
-        let unknown = paths.iter().filter(|path| path.radiance().is_none()).count();
+    fn follow(&self, pixels: &[(u32, u32)], samples: Range<u32>, found: &mut DevicePixels) -> bool {
+        let followed = self.run(pixels, &samples, found).map_err(|error| self.device().fail(error));
+        if followed.is_err() {
+            return false;
+        }
+        let paths = (pixels.len() * samples.len()) as u64;
+        let unknown = found.samples.iter().filter(|path| path.radiance().is_none()).count();
+        let rays: u64 = found.pixels.iter().map(|p| p.bounce_rays() + p.shadow_rays()).sum();
         self.tree.count_paths(Answered {
-            rays: paths.iter().map(|path| 1 + path.bounce_rays() + path.shadow_rays()).sum(),
-            paths: paths.len() as u64,
+            rays: paths + rays,
+            paths,
             unknown_paths: unknown as u64,
             ..Answered::default()
         });
-        Some(paths)
+        true
     }
 }

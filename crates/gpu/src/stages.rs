@@ -25,11 +25,13 @@ pub(crate) enum Kernel {
     Shadows,
     /// A bounce of paths.
     Path,
+    /// Sums of pixels.
+    Film,
 }
 
 impl Kernel {
     /// The number of kernels.
-    pub(crate) const COUNT: usize = 21;
+    pub(crate) const COUNT: usize = 22;
 
     /// Returns its place among all kernels.
     pub(crate) fn place(self) -> usize {
@@ -42,6 +44,7 @@ impl Kernel {
             Self::Shadows => 18,
             Self::Path => 19,
             Self::Doubles => 20,
+            Self::Film => 21,
         }
     }
 
@@ -127,6 +130,10 @@ impl Kernel {
             Self::Shadows => {
                 let shadows = include_str!("stages/shadow_queue.wgsl");
                 ("shadow_queue", vec![PARAMS, QUEUE, RAYS, shadows])
+            }
+            Self::Film => {
+                let arithmetic = include_str!("stages/arithmetic.wgsl");
+                ("film", vec![PARAMS, arithmetic, include_str!("stages/film.wgsl")])
             }
             Self::Path => ("path", of(&[&JOB, &SURFACE, &BSDFS, &PATH])),
         }

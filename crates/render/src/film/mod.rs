@@ -16,7 +16,7 @@ pub use exact::ExactSums;
 pub use probes::{Density, Pilot, ProbePair, Probes, Reading, Role};
 pub(crate) use saved::TileHeader;
 pub use sums::Sums;
-pub use tile::{TILE, Tile, View};
+pub use tile::{PixelSamples, TILE, Tile, View};
 
 use crate::image::Image;
 use crate::settings::Settings;

@@ -33,21 +33,39 @@ impl Sums {
     /// Adds `count` samples to every sum: `radiance` holds those of the first sum, then those of the
     /// next. Returns the number of samples that were negative or not finite, which count as black.
     pub fn add(&mut self, radiance: &[Rgb], count: u32) -> u64 {
+        let samples = radiance.chunks_exact(count as usize).enumerate();
+        samples.map(|(index, samples)| self.add_to(index, samples)).sum()
+    }
+
+    /// Adds samples to one sum; otherwise as [`Sums::add`].
+    pub fn add_to(&mut self, index: usize, samples: &[Rgb]) -> u64 {
         let mut bad = 0;
-        for (index, samples) in radiance.chunks_exact(count as usize).enumerate() {
-            match plain_sum(samples) {
-                Some(sum) => self.totals.add(index, sum),
-                None => bad += self.add_each(index, samples),
-            }
-            if !self.squares.is_empty() {
-                let squares = || samples.iter().filter(|s| is_valid(s)).map(|s| square(*s));
-                match double_sum(squares()) {
-                    Some(sums) => sums.into_iter().for_each(|sum| self.squares.add(index, sum)),
-                    None => squares().for_each(|square| self.squares.add(index, square)),
-                }
+        match plain_sum(samples) {
+            Some(sum) => self.totals.add(index, sum),
+            None => bad = self.add_each(index, samples),
+        }
+        if !self.squares.is_empty() {
+            let squares = || samples.iter().filter(|s| is_valid(s)).map(|s| square(*s));
+            match double_sum(squares()) {
+                Some(sums) => self.add_squares(index, sums),
+                None => squares().for_each(|square| self.squares.add(index, square)),
             }
         }
         bad
+    }
+
+    /// Adds the exact sum of samples to one sum; that of their squares is the sum of both.
+    pub fn add_exact(&mut self, index: usize, total: [f64; 3], squares: [[f64; 3]; 2]) {
+        self.totals.add(index, total);
+        if !self.squares.is_empty() {
+            self.add_squares(index, squares);
+        }
+    }
+
+    fn add_squares(&mut self, index: usize, sums: [[f64; 3]; 2]) {
+        for sum in sums {
+            self.squares.add(index, sum);
+        }
     }
 
     /// Adds samples to a sum one by one, and returns the number of invalid ones.

@@ -84,6 +84,32 @@ impl Tile {
         self.samples += count;
         self.sums.add(radiance, count)
     }
+
+    /// Adds `count` samples to every pixel, in the order of [`Tile::pixels`]; otherwise as [`Tile::add`].
+    pub fn add_pixels<'a>(
+        &mut self,
+        count: u32,
+        pixels: impl Iterator<Item = PixelSamples<'a>>,
+    ) -> u64 {
+        self.samples += count;
+        let add = |(index, samples)| match samples {
+            PixelSamples::Each(radiance) => self.sums.add_to(index, radiance),
+            PixelSamples::Sums(total, squares) => {
+                self.sums.add_exact(index, total, squares);
+                0
+            }
+        };
+        pixels.enumerate().map(add).sum()
+    }
+}
+
+/// Samples of a pixel.
+#[derive(Clone, Copy, Debug)]
+pub enum PixelSamples<'a> {
+    /// One by one.
+    Each(&'a [Rgb]),
+    /// Their exact sum, and the exact sum of their squares in two levels; they were finite and not negative.
+    Sums([f64; 3], [[f64; 3]; 2]),
 }
 
 impl Region {

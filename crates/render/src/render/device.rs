@@ -2,13 +2,13 @@
 
 use super::pass::{PASS, probe_pass, tile_pass, trace_paths};
 use super::watch::Watch;
-use crate::film::{Tile, View};
+use crate::film::{PixelSamples, Tile, View};
 use crate::integrator::Job;
 use crate::integrator::clock::Stage;
 use crate::integrator::counters::Counters;
 use crate::integrator::workspace::{BATCH, Workspace};
 use crate::scene::Rgb;
-use crate::world::{DevicePath, DevicePaths};
+use crate::world::{DevicePath, DevicePaths, DevicePixels};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -42,6 +42,8 @@ pub(super) fn run<'a>(
         .collect();
     let mut work = Workspace::new(job.world, job.elisions);
     let spares = Spares::default();
+    // Memory for what is found next.
+    let mut idle = DevicePixels::default();
     let mut size = FEWEST;
     let mut followed: Option<Followed> = None;
     loop {
@@ -51,7 +53,7 @@ pub(super) fn run<'a>(
         }
         work.clock.restart();
         let (after, finished) = rayon::join(
-            || next.map(|batch| batch.follow(device)),
+            || next.map(|batch| batch.follow(device, std::mem::take(&mut idle))),
             || {
                 followed.take().map(|mut followed| {
                     let counters = followed.add_up(job, probed, &spares);
@@ -63,6 +65,7 @@ pub(super) fn run<'a>(
         if let Some((followed, counters)) = finished {
             work.counters.add(&counters);
             let Batch { steps: done, pass, pixels } = followed.batch;
+            idle = followed.found;
             report(&mut work, (pixels.len() * pass.len()) as u64);
             let left = done.into_iter().map(|(tile, samples)| (tile, pass.end..samples.end));
             steps.extend(left.filter(|(_, samples)| !samples.is_empty()));
@@ -100,10 +103,10 @@ impl<'a> Batch<'a> {
     }
 
     /// Has a device follow the paths.
-    fn follow(self, device: &dyn DevicePaths) -> Followed<'a> {
+    fn follow(self, device: &dyn DevicePaths, mut found: DevicePixels) -> Followed<'a> {
         let start = Instant::now();
-        let paths = device.follow(&self.pixels, self.pass.clone());
-        Followed { batch: self, paths, elapsed: start.elapsed() }
+        let followed = device.follow(&self.pixels, self.pass.clone(), &mut found);
+        Followed { batch: self, found, failed: !followed, elapsed: start.elapsed() }
     }
 }
 
@@ -116,8 +119,9 @@ fn next_pass(samples: &Range<u32>) -> Range<u32> {
 /// A batch whose paths a device has followed.
 struct Followed<'a> {
     batch: Batch<'a>,
-    /// The paths: for each pixel, one sample after the other. `None` if the device has failed.
-    paths: Option<Vec<DevicePath>>,
+    found: DevicePixels,
+    /// True if the device has failed, and nothing is found.
+    failed: bool,
     elapsed: Duration,
 }
 
@@ -125,8 +129,8 @@ impl Followed<'_> {
     /// Adds the samples to the tiles, and those of probes from `probed` on, if it is given. The processor follows the
     /// paths that the device does not know. Returns the counts of all tiles.
     fn add_up(&mut self, job: &Job, probed: Option<u32>, spares: &Spares) -> Counters {
-        let Self { batch: Batch { steps, pass, pixels }, paths, .. } = self;
-        let (pass, pixels, paths) = (&*pass, &*pixels, paths.as_deref());
+        let Self { batch: Batch { steps, pass, pixels }, found, failed, .. } = self;
+        let (pass, pixels, found) = (&*pass, &*pixels, &*found);
         let mut before = 0;
         let places: Vec<Range<usize>> = steps
             .iter()
@@ -138,14 +142,10 @@ impl Followed<'_> {
             .collect();
         let add = |spare: &mut Spare, (tile, own): (&mut Tile, Range<usize>)| {
             let mut counters = Counters::default();
-            match paths {
-                Some(paths) => {
-                    let paths = &paths[own.start * pass.len()..own.end * pass.len()];
-                    counters = count_rays(paths);
-                    let radiance = complete(job, (&pixels[own], pass), paths, spare);
-                    counters.bad_samples += tile.add(&radiance, pass.len() as u32);
-                }
-                None => tile_pass(job, &mut [tile], pass.clone(), spare.get(job)),
+            if *failed {
+                tile_pass(job, &mut [tile], pass.clone(), spare.get(job));
+            } else {
+                counters = add_found(job, tile, (pixels, pass, found), own, spare);
             }
             if let Some(from) = probed {
                 probe_pass(job, &mut [tile], from..pass.end, spare.get(job), || true);
@@ -165,18 +165,46 @@ impl Followed<'_> {
     }
 }
 
-/// Counts the rays of the paths that the device knows.
-fn count_rays(paths: &[DevicePath]) -> Counters {
+/// Adds what a device has found of the pixels of a tile, by their places in a batch; the processor follows paths that the
+/// device does not know. Returns the counts of the others.
+fn add_found(
+    job: &Job,
+    tile: &mut Tile,
+    (pixels, pass, found): (&[(u32, u32)], &Range<u32>, &DevicePixels),
+    own: Range<usize>,
+    spare: &mut Spare,
+) -> Counters {
     let mut counters = Counters::default();
+    let (mut unsummed, mut paths) = (Vec::new(), Vec::new());
+    for (pixel, &position) in found.pixels[own.clone()].iter().zip(&pixels[own.clone()]) {
+        if let Some(place) = pixel.place() {
+            unsummed.push(position);
+            paths.extend_from_slice(&found.samples[place * pass.len()..][..pass.len()]);
+        } else {
+            counters.camera_rays += pass.len() as u64;
+            counters.bounce_rays += pixel.bounce_rays();
+            counters.shadow_rays += pixel.shadow_rays();
+        }
+    }
     for path in paths.iter().filter(|path| path.radiance().is_some()) {
         counters.camera_rays += 1;
         counters.bounce_rays += path.bounce_rays();
         counters.shadow_rays += path.shadow_rays();
     }
+    let radiance = complete(job, (&unsummed, pass), &paths, spare);
+    let mut each = radiance.chunks_exact(pass.len());
+    let samples = found.pixels[own].iter().map(|pixel| {
+        if pixel.place().is_some() {
+            return PixelSamples::Each(each.next().unwrap_or_default());
+        }
+        let (total, squares) = pixel.sums();
+        PixelSamples::Sums(total, squares)
+    });
+    counters.bad_samples += tile.add_pixels(pass.len() as u32, samples);
     counters
 }
 
-/// Returns the radiance of the paths of a tile; the processor follows those that the device does not know.
+/// Returns the radiance of the paths of pixels of a tile; the processor follows those that the device does not know.
 fn complete(
     job: &Job,
     (pixels, pass): (&[(u32, u32)], &Range<u32>),

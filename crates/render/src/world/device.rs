@@ -18,9 +18,53 @@ pub trait DeviceIntegrator: Debug + Send + Sync {
 
 /// A device that is prepared for a job.
 pub trait DevicePaths: Send + Sync {
-    /// Follows the paths of these samples of pixels, given by column and row: sample by sample of the first pixel, then
-    /// of the next. `None` if the device fails.
-    fn follow(&self, pixels: &[(u32, u32)], samples: Range<u32>) -> Option<Vec<DevicePath>>;
+    /// Follows the paths of these samples of pixels, given by column and row, and replaces what was found before. False if
+    /// the device fails; then nothing is found.
+    fn follow(&self, pixels: &[(u32, u32)], samples: Range<u32>, found: &mut DevicePixels) -> bool;
+}
+
+/// What a device has found of samples of pixels.
+#[derive(Clone, Debug, Default)]
+pub struct DevicePixels {
+    /// The pixels.
+    pub pixels: Vec<DevicePixel>,
+    /// The samples of the pixels that are not summed, by their places.
+    pub samples: Vec<DevicePath>,
+}
+
+/// The exact sums of a pixel's samples, unless the device does not know one of them, or the sums might be rounded.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct DevicePixel {
+    total: [f64; 3],
+    /// The sum of squares is that of both levels.
+    squares: [[f64; 3]; 2],
+    place: u32,
+    bounce_rays: u32,
+    shadow_rays: u32,
+    unused: u32,
+}
+
+impl DevicePixel {
+    /// Returns the place of the samples among those of pixels that are not summed, if this one is not.
+    pub fn place(&self) -> Option<usize> {
+        (self.place != u32::MAX).then_some(self.place as usize)
+    }
+
+    /// Returns the sum of the samples, and the sum of their squares in two levels.
+    pub fn sums(&self) -> ([f64; 3], [[f64; 3]; 2]) {
+        (self.total, self.squares)
+    }
+
+    /// Returns the number of rays of bounces, those of unknown paths included.
+    pub fn bounce_rays(&self) -> u64 {
+        self.bounce_rays.into()
+    }
+
+    /// Returns the number of shadow rays, those of unknown paths included.
+    pub fn shadow_rays(&self) -> u64 {
+        self.shadow_rays.into()
+    }
 }
 
 /// A path that a device has followed.

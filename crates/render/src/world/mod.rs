@@ -37,8 +37,8 @@ pub(crate) use caustics::{
 pub use census::Features;
 pub use cut::{Cut, Span};
 pub use device::{
-    DeviceIntegration, DeviceIntegrator, DeviceJob, DevicePath, DevicePaths, DeviceRoulette,
-    DeviceSky, DeviceSun,
+    DeviceIntegration, DeviceIntegrator, DeviceJob, DevicePath, DevicePaths, DevicePixel,
+    DevicePixels, DeviceRoulette, DeviceSky, DeviceSun,
 };
 pub use environment::{
     Environment, Irradiance, PartBounds, Picture, Radiance, SkyLight, SkySamples,
