@@ -60,6 +60,8 @@ pub(crate) enum Failure {
     Merge(#[from] MergeError),
     #[error("{0}: has other layers than {1}; render all parts with the same --layers")]
     Layers(String, String),
+    #[error("{0}: its annotations cannot be read; remove the file, and render the part again")]
+    UnreadAnnotations(String),
     #[error("{0}")]
     Checkpoint(#[from] CheckpointError),
     #[error("{0}")]

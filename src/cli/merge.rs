@@ -13,6 +13,7 @@ use indicatif::HumanCount;
 use serde::Serialize;
 use spherule_render::checkpoint::{self, Caption};
 use spherule_render::film::Region;
+use spherule_render::graphics::Drawing;
 use spherule_render::image::{Channel, Format};
 use spherule_render::layers::{Features, Layer, Layers};
 use spherule_render::render::{ImagePart, Render, ResumableRender};
@@ -89,7 +90,10 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     files.check()?;
     picture_file::check(&args.output)?;
     let merged = merge(args)?;
-    let render = merged.whole.render();
+    let mut render = merged.whole.render();
+    let drawing = Drawing::from_bytes(&merged.caption.annotations);
+    let unread = || Failure::UnreadAnnotations(args.parts[0].display().to_string());
+    drawing.ok_or_else(unread)?.draw_over(&mut render.image);
     let channels = merged.channels(args, format, &render)?;
     let (region, settings) = (merged.whole.region(), merged.whole.settings());
     picture_file::check_size("merge", region, format)?;
@@ -198,8 +202,7 @@ fn report(args: &Args, merged: &Merged, render: &Render, settings: List) {
     warnings(&render.counters, merged.whole.settings()).iter().for_each(output::warn);
     if merged.caption.drawn_over {
         output::warn(
-            "--cell, --background transparent, depth cue, outlines and --color-bar inside need the scene, and are \
-             left out",
+            "--cell, --background transparent, depth cue and outlines need the scene, and are left out",
         );
     }
     for missing in &summary.missing {

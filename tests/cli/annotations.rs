@@ -212,7 +212,6 @@ fn mistakes_are_reported() {
         (&["--text-color", "blak"], "black"),
         (&["--color-by", "q", "--legend"], "use --color-bar"),
         (&["--label", "a", "--region", "0,0,8x8"], "need the whole image"),
-        (&["--part", "1/2", "--legend"], "need the whole image"),
         (&["-o", "a.pdf", "--layers", "all"], "cannot store --layers"),
         (&["-o", "a.svg", "--skip-existing"], "--skip-existing"),
         (&["-o", "a.svg", "--part", "1/2"], "parts of an image"),

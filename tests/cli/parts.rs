@@ -66,6 +66,20 @@ fn pictures_of_parts_are_those_of_the_whole_in_every_format() {
 }
 
 #[test]
+fn parts_have_annotations() {
+    let folder = Folder::new();
+    folder.write("a.xyz", "2\n\nH 0 0 0\nO 1 0 0\n");
+    let marks = ["--legend", "--axes", "--scale-bar", "--label", "t = 1 ps"];
+    let all = [&["a.xyz"], &marks[..]].concat();
+    render(&folder, &[&["-o", "a.png"], &all[..]].concat(), &["1/2", "2/2"]);
+    let merge = ["merge", "-q", "-o", "a.png", "a.1-of-2.part", "a.2-of-2.part"];
+    folder.succeed(&merge);
+    let merged = folder.read("a.png");
+    assert!(merged == folder.picture("a.png", &all));
+    assert!(merged != folder.picture("a.png", &["a.xyz"]));
+}
+
+#[test]
 fn parts_have_presets_and_colored_backgrounds() {
     let folder = Folder::new();
     folder.write("a.xyz", "2\n\nH 0 0 0\nO 1 0 0\n");

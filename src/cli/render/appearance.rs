@@ -127,6 +127,10 @@ pub(in crate::cli) fn write_bar(
     write_file(path, &bar)
 }
 
+/// Warning of annotations that have no room.
+pub(super) const OVERLAP: &str =
+    "annotations overlap: make the image larger, or use fewer or a smaller --text-size";
+
 /// Draws the annotations of a scene over an image; returns whether all of them have room.
 pub(in crate::cli) fn draw_annotations(
     scene: (&Annotations, &Look),

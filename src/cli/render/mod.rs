@@ -255,9 +255,7 @@ fn draw_over(
     if job.page.is_none() {
         let turns = job.turn.is_some();
         if !draw_annotations((annotations, look), &prepared.world, &mut canvas, turns) {
-            session.notices.warn(
-                "annotations overlap: make the image larger, or use fewer or a smaller --text-size",
-            );
+            session.notices.warn(appearance::OVERLAP);
         }
     }
     Ok(canvas.matte)
@@ -288,7 +286,7 @@ fn trace(
     let options = Options { judge: denoiser.is_some().then_some(&judge as &Judge), ..options };
     let begin = || ResumableRender::begin_part(world, settings, &options, prepared.part.clone());
     let mut render = unfinished.map_or_else(begin, Ok)?;
-    let caption = part::caption(job, prepared);
+    let caption = writer.map(|_| part::caption(job, prepared)).unwrap_or_default();
     let mut terminal = job.report.terminal.then(|| Terminal::new(settings));
     let after = |pause: Option<Duration>| pause.map(|pause| Instant::now() + pause);
     // Between the images of a sequence, checkpoints are written only when they are due.

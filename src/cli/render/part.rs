@@ -3,6 +3,7 @@
 //! The file is the checkpoint of the part. So the same command resumes an interrupted part, as when a
 //! scheduler restarts it.
 
+use super::appearance::OVERLAP;
 use super::checkpoint_writer::CheckpointWriter;
 use super::job::Job;
 use super::layers;
@@ -13,6 +14,7 @@ use crate::cli::{Failure, output};
 use spherule_render::checkpoint::Caption;
 use spherule_render::film::{Film, Region};
 use spherule_render::layers::{Layer, features};
+use spherule_render::overlay::annotations::{self, AnnotationDrawing};
 use spherule_render::render::{ImagePart, Options, ResumableRender};
 use spherule_render::scene::Scene;
 use spherule_render::split::Part;
@@ -81,10 +83,10 @@ pub(super) fn image_part(job: &Job, region: Region, scene: &Scene) -> Result<Ima
               none and --spp",
         );
     }
-    if !scene.look.is_plain() || !scene.annotations.is_empty() {
+    if !scene.look.is_plain() {
         return refuse(
-            &"--cell, --background transparent, --preset depthcue and outline, annotations such as --color-bar \
-              inside, and the same in a scene need the whole image; remove them with --part",
+            &"--cell, --background transparent, --preset depthcue and outline, and the same in a scene need the whole \
+              image; remove them with --part",
         );
     }
     part.of_image(&whole, job.split).or_else(|error| refuse(&format!("--part: {error}")))
@@ -94,9 +96,20 @@ pub(super) fn image_part(job: &Job, region: Region, scene: &Scene) -> Result<Ima
 pub(super) fn caption(job: &Job, prepared: &Prepared) -> Caption {
     let layers = layers::wanted(&job.encoding.layers);
     let title = prepared.title.clone();
+    Caption {
+        title,
+        looks: prepared.looks(job),
+        drawn_over: !prepared.scene.look.is_plain(),
+        annotations: annotation_drawing(job, prepared).drawing.to_bytes(),
+        layers,
+        ..Caption::default()
+    }
+}
+
+/// Returns the drawing of the annotations over the whole image.
+fn annotation_drawing(job: &Job, prepared: &Prepared) -> AnnotationDrawing {
     let Scene { look, annotations, .. } = &prepared.scene;
-    let drawn_over = !look.is_plain() || !annotations.is_empty();
-    Caption { title, looks: prepared.looks(job), drawn_over, layers, ..Caption::default() }
+    annotations::draw(annotations, &prepared.world, look, job.turn.is_some())
 }
 
 /// Completes the file of a part, and prints a summary.
@@ -127,6 +140,9 @@ pub(super) fn finish(
     writer
         .write(job, prepared, &caption, render)
         .map_err(|error| Failure::Write(writer.path().to_owned(), error))?;
+    if !annotation_drawing(job, prepared).fits {
+        output::warn(OVERLAP);
+    }
     if !job.report.quiet {
         let picture = job.output.display();
         let all = path(&job.output, part, "*");

@@ -39,7 +39,7 @@ use std::ops::Range;
 const MAGIC: [u8; 20] = *b"spherule-checkpoint\n";
 
 /// Version of the format.
-const FORMAT: u32 = 7;
+const FORMAT: u32 = 8;
 
 /// The program that writes: another may make other bytes of the same samples.
 const PROGRAM: &str = env!("CARGO_PKG_VERSION");
@@ -66,6 +66,8 @@ pub struct Caption {
     pub looks: Vec<(String, String)>,
     /// True if something is drawn over the picture that takes the scene: a cell, a background.
     pub drawn_over: bool,
+    /// The drawing of the scene's annotations, in the bytes of `graphics::Drawing`.
+    pub annotations: Vec<u8>,
     /// The layers that are wanted.
     pub layers: Vec<Layer>,
     /// The tiles whose features are known, by their numbers.

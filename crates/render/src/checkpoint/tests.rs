@@ -40,7 +40,8 @@ fn caption() -> Caption {
     let looks = vec![("view".to_owned(), "auto".to_owned())];
     let (layers, features) = (vec![Layer::Albedo], vec![Features::NONE; 256]);
     let title = "A field".to_owned();
-    Caption { title, looks, drawn_over: true, layers, tiles: 0..1, features }
+    let annotations = vec![0, 1];
+    Caption { title, looks, drawn_over: true, annotations, layers, tiles: 0..1, features }
 }
 
 fn origin(scene: &Scene) -> Origin {

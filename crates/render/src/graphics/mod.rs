@@ -15,22 +15,23 @@ pub use page::{Format, Page, PageError};
 
 use crate::color::Rgb;
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 /// Shapes in the order in which they are drawn.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Drawing {
     shapes: Vec<Shape>,
 }
 
 /// A shape of one color.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Shape {
     Polygon(Polygon),
     Text(Text),
 }
 
 /// A filled polygon.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Polygon {
     corners: Vec<DVec2>,
     /// Linear color.
@@ -40,7 +41,7 @@ struct Polygon {
 }
 
 /// A line of text.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Text {
     /// The characters; those that the font lacks are boxes.
     pub text: String,
@@ -55,7 +56,7 @@ pub struct Text {
 }
 
 /// Horizontal alignment of a text.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Align {
     /// The text begins at its position.
     #[default]
@@ -117,6 +118,21 @@ impl Drawing {
             }
             Shape::Text(text) => Shape::Text(Text { position: text.position + offset, ..text }),
         }));
+    }
+
+    /// Returns the drawing in bytes, for [`Drawing::from_bytes`] of the same version of this library; none if it is
+    /// empty.
+    #[expect(clippy::missing_panics_doc, reason = "vectors take all bytes")]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        if self.is_empty() {
+            return Vec::new();
+        }
+        postcard::to_stdvec(self).expect("vectors take all bytes")
+    }
+
+    /// Returns the drawing of these bytes; `None` if they are not one.
+    pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
+        if bytes.is_empty() { Some(Self::default()) } else { postcard::from_bytes(bytes).ok() }
     }
 
     /// Returns whether there are no shapes.

@@ -8,8 +8,9 @@ use ab_glyph::{OutlineCurve, Point, point};
 use ab_glyph_rasterizer::Rasterizer;
 use glam::DVec2;
 
-/// Maximum width and height of a shape in pixels; larger shapes are not drawn.
-const MAX_EXTENT: f64 = 131_072.0;
+/// Maximum area of a shape beside that of the picture, and in pixels; shapes that are larger than both are not drawn.
+const MAX_SHARE: f64 = 4.0;
+const MAX_AREA: f64 = 1_048_576.0;
 
 impl Drawing {
     /// Draws over a picture; shapes outside are cut off. Colors are linear like the picture's: exposure
@@ -71,7 +72,13 @@ fn fill(image: &mut Image, curves: &[OutlineCurve], color: Rgb, opacity: f32) {
         all().fold(DVec2::NEG_INFINITY, |high, p| high.max(DVec2::new(p.x.into(), p.y.into())));
     let (low, high) = (low.floor(), high.ceil());
     let size = high - low;
-    if !(size.min_element() > 0.0 && size.max_element() < MAX_EXTENT) {
+    let picture = DVec2::new(image.width.into(), image.height.into());
+    let within = high.cmpgt(DVec2::ZERO).all() && low.cmplt(picture).all();
+    let most = MAX_AREA.max(MAX_SHARE * picture.element_product());
+    if !(within && size.min_element() > 0.0 && size.element_product() < most) {
+        return;
+    }
+    if !(color.is_finite() && (0.0..=1.0).contains(&opacity)) {
         return;
     }
     let local = |p: Point| point(p.x - low.x as f32, p.y - low.y as f32);
