@@ -7,8 +7,8 @@ use numpy::ndarray::{ArrayView1, ArrayView2, Axis};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use rayon::prelude::*;
-use spherule::query::{Hits, NOTHING, QueryError, RayColumns, Surface};
-use std::cell::RefCell;
+use spherule::query::{Hits, NOTHING, QueryError, RayColumns, RayRows, Surface};
+use std::borrow::Cow;
 
 /// The most rays of a task: as many as are put in order together.
 const BATCH: usize = 1 << 16;
@@ -184,13 +184,20 @@ impl SphereTree {
         sphere: &mut [u32],
         surface: Option<&mut [Surface]>,
     ) -> Result<(), QueryError> {
-        rays.in_columns(|rays| {
-            self.tree.intersect_columns(rays, Hits { t, sphere, surface }).map(|_| ())
-        })
+        let hits = Hits { t, sphere, surface };
+        match rays.in_rows() {
+            Some(rays) => self.tree.intersect_rows(&rays, hits)?,
+            None => rays.in_columns(|rays| self.tree.intersect_columns(rays, hits))?,
+        };
+        Ok(())
     }
 
     fn shade(&self, rays: RowsOfRays, t: &[f64], occluded: &mut [bool]) -> Result<(), QueryError> {
-        rays.in_columns(|rays| self.tree.occluded_columns(rays, t, occluded).map(|_| ()))
+        match rays.in_rows() {
+            Some(rays) => self.tree.occluded_rows(&rays, t, occluded)?,
+            None => rays.in_columns(|rays| self.tree.occluded_columns(rays, t, occluded))?,
+        };
+        Ok(())
     }
 }
 
@@ -237,47 +244,27 @@ impl<'a> RowsOfRays<'a> {
         Self { origins: part(self.origins), directions: part(self.directions) }
     }
 
-    /// Calls `trace` with the rays in columns: where they lie if they are columns, or else transposed.
+    /// The rays where they lie, if their rows are contiguous.
+    fn in_rows(&self) -> Option<RayRows<'a>> {
+        let rows = |table: ArrayView2<'a, f32>| table.to_slice().map(|rows| rows.as_chunks().0);
+        Some(RayRows { origin: rows(self.origins)?, direction: rows(self.directions)? })
+    }
+
+    /// Calls `trace` with the rays in columns: where they lie if those are contiguous, or else copied.
     fn in_columns<T>(&self, trace: impl FnOnce(&RayColumns) -> T) -> T {
-        TRANSPOSED.with_borrow_mut(|[from, toward]| {
-            let origin = columns_of(self.origins, from);
-            let direction = columns_of(self.directions, toward);
-            trace(&RayColumns { origin, direction })
-        })
+        let [origin, direction] = [self.origins, self.directions].map(columns_of);
+        let origin = origin.each_ref().map(|column| &**column);
+        let direction = direction.each_ref().map(|column| &**column);
+        trace(&RayColumns { origin, direction })
     }
 }
 
-thread_local! {
-    /// Columns of origins and directions of a task's rays: new memory for each task takes longer than the copies.
-    static TRANSPOSED: RefCell<[[Vec<f32>; 3]; 2]> =
-        const { RefCell::new([const { [const { Vec::new() }; 3] }; 2]) };
-}
-
-/// The columns of a table, copied to `place` unless they are contiguous.
-fn columns_of<'a>(table: ArrayView2<'a, f32>, place: &'a mut [Vec<f32>; 3]) -> [&'a [f32]; 3] {
-    if table.strides()[0] == 1 {
-        let column = |axis| table.index_axis_move(Axis(1), axis).to_slice();
-        if let (Some(x), Some(y), Some(z)) = (column(0), column(1), column(2)) {
-            return [x, y, z];
-        }
-    }
-    if let Some(rows) = table.to_slice() {
-        // In one pass over the rows: three take longer than the rest of the work leaves unnoticed.
-        let (rows, _) = rows.as_chunks::<3>();
-        for column in place.iter_mut() {
-            column.resize(rows.len(), 0.0);
-        }
-        let [x, y, z] = place.each_mut();
-        let columns = x.iter_mut().zip(y.iter_mut()).zip(z.iter_mut());
-        for (((x, y), z), row) in columns.zip(rows) {
-            [*x, *y, *z] = *row;
-        }
-    } else {
-        for (axis, column) in place.iter_mut().enumerate() {
-            *column = table.column(axis).to_vec();
-        }
-    }
-    place.each_ref().map(Vec::as_slice)
+/// The columns of a table, copied unless they are contiguous.
+fn columns_of(table: ArrayView2<f32>) -> [Cow<[f32]>; 3] {
+    [0, 1, 2].map(|axis| {
+        let column = table.index_axis_move(Axis(1), axis);
+        column.to_slice().map_or_else(|| column.to_vec().into(), Cow::Borrowed)
+    })
 }
 
 /// Sets the bounds of rays from number `first` on; infinity without bounds.

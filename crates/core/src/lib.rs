@@ -65,7 +65,7 @@ mod vec3;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-pub use query::{Hit, Hits, NOTHING, QueryError, RayColumns, SphereTree, Surface, Tally};
+pub use query::{Hit, Hits, NOTHING, QueryError, RayColumns, RayRows, SphereTree, Surface, Tally};
 
 /// Items for the renderer and for measurements. Anything here may change in any release.
 #[doc(hidden)]

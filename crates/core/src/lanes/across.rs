@@ -26,6 +26,27 @@ pub fn columns_of(rows: &[[f32; 8]; 16]) -> [F32x16; 8] {
     std::array::from_fn(|i| bytemuck::cast([low[i], high[i]]))
 }
 
+/// The coordinates x, y and z of sixteen points.
+#[inline(always)]
+pub fn columns_of_points(points: &[[f32; 3]; 16]) -> [F32x16; 3] {
+    let rows: &[[f32; 8]; 6] = bytemuck::cast_ref(points);
+    let rows = rows.map(F32x8::new);
+    // Coordinate `axis` of point `i` of eight is number `3 i + axis` of 24. So it is in lane `3 i + axis & 7` of one of three
+    // rows, and no other point of the eight is in that lane.
+    let half = |rows: [F32x8; 3], axis: u32| {
+        let lanes = |row: u32| {
+            let bit = |lane| u32::from((8 * row + lane) % 3 == axis) << lane;
+            F32x8::lanes((0..8).map(bit).sum())
+        };
+        let [first, second, third] = rows;
+        let all = Lanes::select(lanes(0), first, Lanes::select(lanes(1), second, third));
+        let order = (0..8).fold(0, |order, i| order | ((3 * i + axis) & 7) << (4 * i));
+        shuffle(all, order)
+    };
+    let [a, b, c, d, e, f] = rows;
+    [0, 1, 2].map(|axis| bytemuck::cast([half([a, b, c], axis), half([d, e, f], axis)]))
+}
+
 /// The integer parts of numbers from 0 to 2^31; 0 for NaN and for numbers below 0.
 #[inline(always)]
 pub fn truncated(numbers: F32x16) -> U32x16 {

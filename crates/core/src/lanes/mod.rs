@@ -16,8 +16,8 @@ mod fused;
 mod masks;
 
 pub use across::{
-    Packing, columns_of, greatest_of, least_lane, look_up, reverse_bits, shuffle, shuffle_numbers,
-    transpose, truncated,
+    Packing, columns_of, columns_of_points, greatest_of, least_lane, look_up, reverse_bits,
+    shuffle, shuffle_numbers, transpose, truncated,
 };
 pub use bits::{bits, bits_of, first_lanes, numbers, set_bits};
 pub use doubles::{Doubles, load_doubles, narrow, store_rounded, store_where, widen};

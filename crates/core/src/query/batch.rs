@@ -1,7 +1,7 @@
 //! Batches of rays: those that single precision holds are traced in packets, the others one by one.
 
 use super::chunk::{ChunkRays, Rows};
-use super::columns::{Hits, RayColumns, Surface, Tally};
+use super::columns::{Hits, RayTable, Surface, Tally};
 use super::load::PACKET;
 use super::reorder::{BATCH, SortedRays};
 use super::surface::PendingSurfaces;
@@ -77,33 +77,27 @@ impl SphereTree {
     /// if that has been found elsewhere ([`decide_found`]).
     pub(super) fn run<Q: Query>(
         &self,
-        columns: &RayColumns,
+        table: &impl RayTable,
         answers: &mut impl Answers,
         known: Option<&[u32]>,
     ) -> Tally {
         let mut tally = Tally::default();
-        let count = columns.origin[0].len();
+        let count = table.len();
         let mut rays = Rays::with_capacity(CHUNK.min(count));
         let mut hits = ray::Hits::with_capacity(CHUNK.min(count));
         let mut sorted = SortedRays::taken();
         for first in (0..count).step_by(BATCH) {
-            let batch = Rows { columns, rows: first..count.min(first + BATCH) };
+            let batch = Rows { table, rows: first..count.min(first + BATCH) };
             let is_sorted =
                 known.is_none() && self.sort_rays(&batch, answers.bounds(), &mut sorted);
             for first in (0..batch.rows.len()).step_by(CHUNK) {
                 let places = first..batch.rows.len().min(first + CHUNK);
                 let traced = (&mut rays, &mut hits, known);
                 if is_sorted {
-                    self.run_chunk::<Q>(
-                        columns,
-                        &sorted.chunk(places),
-                        traced,
-                        answers,
-                        &mut tally,
-                    );
+                    self.run_chunk::<Q>(table, &sorted.chunk(places), traced, answers, &mut tally);
                 } else {
                     let chunk = batch.chunk(places);
-                    self.run_chunk::<Q>(columns, &chunk, traced, answers, &mut tally);
+                    self.run_chunk::<Q>(table, &chunk, traced, answers, &mut tally);
                 }
             }
         }
@@ -115,7 +109,7 @@ impl SphereTree {
     #[inline(always)]
     fn run_chunk<Q: Query>(
         &self,
-        columns: &RayColumns,
+        table: &impl RayTable,
         chunk: &impl ChunkRays,
         (rays, hits, known): (&mut Rays, &mut ray::Hits, Option<&[u32]>),
         answers: &mut impl Answers,
@@ -148,14 +142,14 @@ impl SphereTree {
                 let Some(surfaces) = answers.surfaces() else { continue };
                 let pair = Pair { row: row as u32, sphere: hit.sphere as u32 };
                 if !self.spheres.precise.is_empty() {
-                    surfaces[i] = self.surface_of_ray(columns.row(i), &hit);
+                    surfaces[i] = self.surface_of_ray(table.row(i), &hit);
                 } else if pending.push(pair, i) {
-                    self.flush_surfaces(&mut pending, (rays, hits), (columns, unit), surfaces);
+                    self.flush_surfaces(&mut pending, (rays, hits), (table, unit), surfaces);
                 }
             }
             for lane in set_bits(alone) {
                 let i = chunk.row(first + lane);
-                let (ray, bound) = (columns.row(i), answers.bounds()[i]);
+                let (ray, bound) = (table.row(i), answers.bounds()[i]);
                 let hit = if plain >> lane & 1 == 1 {
                     let hit = (hit >> lane & 1 == 1).then(|| found(first + lane));
                     self.with_strays::<Q>(ray, bound, hit, tally)
@@ -170,7 +164,7 @@ impl SphereTree {
             }
         }
         if let Some(surfaces) = answers.surfaces() {
-            self.flush_surfaces(&mut pending, (rays, hits), (columns, unit), surfaces);
+            self.flush_surfaces(&mut pending, (rays, hits), (table, unit), surfaces);
         }
     }
 }

@@ -1,7 +1,7 @@
-//! The rays of a chunk: rows of the caller's columns, or rays that were sorted.
+//! The rays of a chunk: rows of the caller's table, or rays that were sorted.
 
-use super::RayColumns;
-use crate::lanes::{F32x16, Lanes, MAX_LANES};
+use super::columns::RayTable;
+use crate::lanes::{F32x16, MAX_LANES};
 use std::ops::Range;
 
 /// Sixteen rays as the caller gave them.
@@ -26,20 +26,20 @@ pub(super) trait ChunkRays {
 }
 
 /// Rays in the caller's order.
-pub(super) struct Rows<'a> {
-    pub(super) columns: &'a RayColumns<'a>,
+pub(super) struct Rows<'a, T> {
+    pub(super) table: &'a T,
     pub(super) rows: Range<usize>,
 }
 
-impl Rows<'_> {
+impl<T> Rows<'_, T> {
     /// Some of the rays.
     pub(super) fn chunk(&self, places: Range<usize>) -> Self {
         let first = self.rows.start;
-        Self { columns: self.columns, rows: first + places.start..first + places.end }
+        Self { table: self.table, rows: first + places.start..first + places.end }
     }
 }
 
-impl ChunkRays for Rows<'_> {
+impl<T: RayTable> ChunkRays for Rows<'_, T> {
     fn len(&self) -> usize {
         self.rows.len()
     }
@@ -54,19 +54,7 @@ impl ChunkRays for Rows<'_> {
         let rows = self.row(first)..self.rows.end.min(self.row(first) + MAX_LANES);
         let mut bound = [f64::NAN; MAX_LANES];
         bound[..rows.len()].copy_from_slice(&bounds[rows.clone()]);
-        let column = |x: &[f32], rest: f32| {
-            if rows.len() == MAX_LANES {
-                return F32x16::load(&x[rows.clone()]);
-            }
-            let mut row = [rest; MAX_LANES];
-            row[..rows.len()].copy_from_slice(&x[rows.clone()]);
-            F32x16::new(row)
-        };
-        let RayColumns { origin, direction } = self.columns;
-        RayPacket {
-            origin: origin.map(|x| column(x, 0.0)),
-            direction: direction.map(|x| column(x, 1.0)),
-            bound,
-        }
+        let [origin, direction] = self.table.packet(rows);
+        RayPacket { origin, direction, bound }
     }
 }

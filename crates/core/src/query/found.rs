@@ -2,9 +2,10 @@
 
 use super::batch::{CHUNK, Occlusion};
 use super::chunk::Rows;
+use super::columns::{RayTable, same_length};
 use super::{Hits, NOTHING, QueryError, RayColumns, SphereTree, Tally};
 use crate::bvh::{Any, ClosestRounded, Tree};
-use crate::query::columns::same_length;
+
 use crate::ray::{self, MISS, Rays};
 
 impl SphereTree {
@@ -31,7 +32,7 @@ impl SphereTree {
         let (mut some, mut bound) =
             (Rays::with_capacity(CHUNK.min(count)), ray::Hits::with_capacity(CHUNK.min(count)));
         for first in (0..count).step_by(CHUNK) {
-            let chunk = Rows { columns, rows: first..count.min(first + CHUNK) };
+            let chunk = Rows { table: columns, rows: first..count.min(first + CHUNK) };
             self.load(&chunk, bounds, &mut some, &mut bound);
             for row in 0..chunk.rows.len() {
                 rays.push(some.origin.row(row), some.direction.row(row), MISS);

@@ -16,7 +16,7 @@ mod scaled_ray;
 mod strays;
 mod surface;
 
-pub use columns::{Hit, Hits, NOTHING, RayColumns, Surface, Tally};
+pub use columns::{Hit, Hits, NOTHING, RayColumns, RayRows, Surface, Tally};
 
 use crate::bvh::Bvh;
 use crate::bvh::builders::{Builder, Item, Precise, build_items, collected};
@@ -26,7 +26,7 @@ use crate::lanes::F32x4;
 use crate::spheres::Spheres;
 use crate::vec3::Vec3 as Coordinates;
 use batch::Occlusion;
-use columns::same_length;
+use columns::{RayTable, same_length};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use scaled_ray::{REACH, REACH_IN_LEAVES, ScaledRay};
@@ -288,15 +288,8 @@ impl SphereTree {
     ///
     /// # Errors
     /// Columns of different lengths.
-    pub fn intersect_columns(
-        &self,
-        rays: &RayColumns,
-        mut hits: Hits,
-    ) -> Result<Tally, QueryError> {
-        let surfaces = hits.surface.as_ref().map_or(hits.t.len(), |column| column.len());
-        rays.check(&[hits.t.len(), hits.sphere.len(), surfaces])?;
-        hits.sphere.fill(NOTHING);
-        Ok(self.run::<ClosestRounded>(rays, &mut hits, None))
+    pub fn intersect_columns(&self, rays: &RayColumns, hits: Hits) -> Result<Tally, QueryError> {
+        self.intersect_all(rays, hits)
     }
 
     /// Finds whether each ray hits anything nearer than its bound in `t`. The order of rays matters as little as to
@@ -307,6 +300,54 @@ impl SphereTree {
     pub fn occluded_columns(
         &self,
         rays: &RayColumns,
+        t: &[f64],
+        occluded: &mut [bool],
+    ) -> Result<Tally, QueryError> {
+        self.occluded_all(rays, t, occluded)
+    }
+
+    /// Does what [`SphereTree::intersect_columns`] does, for rays in rows.
+    ///
+    /// ```
+    /// use spherule_core::{Hits, RayRows, SphereTree};
+    ///
+    /// let tree = SphereTree::from_columns(&[0.0], &[0.0], &[5.0], &[1.0])?;
+    /// let rays = RayRows { origin: &[[0.0; 3]; 2], direction: &[[0.0, 0.0, 2.0], [0.0, 1.0, 0.0]] };
+    /// let (mut t, mut sphere) = ([f64::INFINITY; 2], [0; 2]);
+    /// tree.intersect_rows(&rays, Hits { t: &mut t, sphere: &mut sphere, surface: None })?;
+    /// assert_eq!((t, sphere), ([2.0, f64::INFINITY], [0, spherule_core::NOTHING]));
+    /// # Ok::<(), spherule_core::QueryError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Slices of different lengths.
+    pub fn intersect_rows(&self, rays: &RayRows, hits: Hits) -> Result<Tally, QueryError> {
+        self.intersect_all(rays, hits)
+    }
+
+    /// Does what [`SphereTree::occluded_columns`] does, for rays in rows.
+    ///
+    /// # Errors
+    /// Slices of different lengths.
+    pub fn occluded_rows(
+        &self,
+        rays: &RayRows,
+        t: &[f64],
+        occluded: &mut [bool],
+    ) -> Result<Tally, QueryError> {
+        self.occluded_all(rays, t, occluded)
+    }
+
+    fn intersect_all(&self, rays: &impl RayTable, mut hits: Hits) -> Result<Tally, QueryError> {
+        let surfaces = hits.surface.as_ref().map_or(hits.t.len(), |column| column.len());
+        rays.check(&[hits.t.len(), hits.sphere.len(), surfaces])?;
+        hits.sphere.fill(NOTHING);
+        Ok(self.run::<ClosestRounded>(rays, &mut hits, None))
+    }
+
+    fn occluded_all(
+        &self,
+        rays: &impl RayTable,
         t: &[f64],
         occluded: &mut [bool],
     ) -> Result<Tally, QueryError> {

@@ -5,8 +5,9 @@
 //! Reordering", ACM Transactions on Graphics 2010). Rays that come in some order, as those of pixels do, stay in
 //! it: a sample of neighbors tells. Answers do not depend on the order.
 
+use super::SphereTree;
 use super::chunk::{ChunkRays, RayPacket, Rows};
-use super::{RayColumns, SphereTree};
+use super::columns::RayTable;
 use crate::lanes::{F32x16, Lanes, MAX_LANES, U32x16, columns_of, truncated};
 use crate::radix::{DIGIT, sort_by_digits, spaced};
 use std::cell::Cell;
@@ -131,11 +132,16 @@ struct Curve {
 
 impl SphereTree {
     /// Sorts rays by the order in which they are traced fastest. Returns whether that is another than theirs.
-    pub(super) fn sort_rays(&self, rows: &Rows, bounds: &[f64], sorted: &mut SortedRays) -> bool {
+    pub(super) fn sort_rays<T: RayTable>(
+        &self,
+        rows: &Rows<T>,
+        bounds: &[f64],
+        sorted: &mut SortedRays,
+    ) -> bool {
         if rows.len() < FEW || self.bvh.len() <= 1 {
             return false;
         }
-        let Some(curve) = self.curve(rows.columns, rows.rows.clone()) else { return false };
+        let Some(curve) = self.curve(rows.table, rows.rows.clone()) else { return false };
         sorted.first = rows.rows.start;
         sorted.records.clear();
         sorted.keys.clear();
@@ -146,7 +152,7 @@ impl SphereTree {
             let keys = codes.to_array().into_iter().zip(first as u64..);
             sorted.keys.extend(keys.take(count).map(|(code, place)| u64::from(code) << 32 | place));
             sorted.records.extend((0..count).map(|lane| {
-                let (origin, direction) = rows.columns.row(rows.row(first + lane));
+                let (origin, direction) = rows.table.row(rows.row(first + lane));
                 Record { origin, direction, bound: packet.bound[lane] }
             }));
         }
@@ -155,7 +161,7 @@ impl SphereTree {
     }
 
     /// Returns the curve along which rays are sorted; `None` if they are in some order, or if it does not matter.
-    fn curve(&self, columns: &RayColumns, rows: Range<usize>) -> Option<Curve> {
+    fn curve(&self, table: &impl RayTable, rows: Range<usize>) -> Option<Curve> {
         let sampled = |k: usize| rows.start + k * (rows.len() - 1) / SAMPLES;
         // Pairs of neighbors, and of rays that have nothing to do with each other.
         let near = |k: usize| (sampled(k), sampled(k) + 1);
@@ -169,8 +175,8 @@ impl SphereTree {
             }
             *distances.select_nth_unstable_by(SAMPLES / 2, f32::total_cmp).1
         };
-        let origin = |i: usize| columns.row(i).0;
-        let direction = |i: usize| on_cube(columns.row(i).1);
+        let origin = |i: usize| table.row(i).0;
+        let direction = |i: usize| on_cube(table.row(i).1);
         // The size of a leaf tells what is near, as for packets; the tree's coordinates are up to 1.
         let leaf = self.bvh.mean_leaf_extent();
         let origins = [apart(&origin, &near), apart(&origin, &far)];
@@ -254,6 +260,7 @@ fn on_curve(point: [F32x16; 3], bits: u32) -> U32x16 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::query::RayColumns;
     use crate::random::Random;
 
     /// Number of spheres of a tree that the caches do not hold.
@@ -300,7 +307,7 @@ mod tests {
             let columns = RayColumns { origin: [&x, &y, &z], direction: [&dx, &dy, &dz] };
             let mut sorted = SortedRays::NONE;
             let bounds = vec![1.0; x.len()];
-            let all = Rows { columns: &columns, rows: 0..x.len() };
+            let all = Rows { table: &columns, rows: 0..x.len() };
             let case = (tree.len(), shuffled, one_origin, one_direction);
             assert_eq!(tree.sort_rays(&all, &bounds, &mut sorted), expected, "{case:?}");
             if !expected {

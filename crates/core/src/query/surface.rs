@@ -1,8 +1,9 @@
 //! Points and normals of hits.
 
 use super::batch::FoundHit;
+use super::columns::RayTable;
 use super::scaled_ray::ScaledRay;
-use super::{RayColumns, SphereTree, Surface};
+use super::{SphereTree, Surface};
 use crate::exact;
 use crate::intersect::{Pair, Pairs};
 use crate::lanes::{Doubles, F64x8, Mask, set_bits};
@@ -69,7 +70,7 @@ impl SphereTree {
         &self,
         pending: &mut PendingSurfaces,
         (rays, hits): (&Rays, &Hits),
-        (columns, unit): (&RayColumns, impl Fn(usize) -> f64),
+        (table, unit): (&impl RayTable, impl Fn(usize) -> f64),
         surfaces: &mut [Surface],
     ) {
         let count = std::mem::take(&mut pending.count);
@@ -94,7 +95,7 @@ impl SphereTree {
             let (Pair { row, sphere }, of) = (pending.pairs[lane], pending.of[lane]);
             let t = hits.t[row as usize] * unit(row as usize);
             let found = FoundHit { sphere: sphere as usize, id: 0, t };
-            surfaces[of] = self.surface_of_ray(columns.row(of), &found);
+            surfaces[of] = self.surface_of_ray(table.row(of), &found);
         }
     }
 }

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use spherule_core::internals::exact::{self, Distance};
 use spherule_core::internals::random::Random;
 use spherule_core::internals::ray::ExactRay;
-use spherule_core::{Hits, NOTHING, RayColumns, SphereTree, Surface, Tally};
+use spherule_core::{Hits, NOTHING, QueryError, RayColumns, RayRows, SphereTree, Surface, Tally};
 use std::cmp::Ordering;
 
 type Sphere = [f32; 4];
@@ -90,14 +90,24 @@ fn columns(rays: &[Ray]) -> [Vec<f32>; 6] {
     })
 }
 
-fn traced(tree: &SphereTree, rays: &[Ray]) -> (Vec<f64>, Vec<u32>, Vec<Surface>, Tally) {
+type Traced = (Vec<f64>, Vec<u32>, Vec<Surface>, Tally);
+
+/// Traces rays in columns, and the same in rows.
+fn traced(tree: &SphereTree, rays: &[Ray]) -> Traced {
+    let hits = |trace: &dyn Fn(Hits) -> Result<Tally, QueryError>| -> Traced {
+        let mut t = vec![f64::INFINITY; rays.len()];
+        let (mut sphere, mut surface) = (vec![0; rays.len()], vec![Surface::default(); rays.len()]);
+        let hits = Hits { t: &mut t, sphere: &mut sphere, surface: Some(&mut surface) };
+        let tally = trace(hits).expect("columns agree");
+        (t, sphere, surface, tally)
+    };
     let [x, y, z, dx, dy, dz] = columns(rays);
-    let rays = RayColumns { origin: [&x, &y, &z], direction: [&dx, &dy, &dz] };
-    let mut t = vec![f64::INFINITY; x.len()];
-    let (mut sphere, mut surface) = (vec![0; x.len()], vec![Surface::default(); x.len()]);
-    let hits = Hits { t: &mut t, sphere: &mut sphere, surface: Some(&mut surface) };
-    let tally = tree.intersect_columns(&rays, hits).expect("columns agree");
-    (t, sphere, surface, tally)
+    let columns = RayColumns { origin: [&x, &y, &z], direction: [&dx, &dy, &dz] };
+    let found = hits(&|hits| tree.intersect_columns(&columns, hits));
+    let (origin, direction): (Vec<_>, Vec<_>) = rays.iter().copied().unzip();
+    let rows = RayRows { origin: &origin, direction: &direction };
+    assert_eq!(hits(&|hits| tree.intersect_rows(&rows, hits)), found);
+    found
 }
 
 fn check(spheres: &[Sphere], rays: &[Ray]) {
@@ -261,6 +271,11 @@ fn the_order_of_rays_changes_no_answer() {
         let bounds: Vec<f64> = (0..count).map(|i| 0.1 * (1 + i % 20) as f64).collect();
         let mut occluded = vec![true; count];
         tree.occluded_columns(&view, &bounds, &mut occluded).expect("columns agree");
+        let (origin, direction): (Vec<_>, Vec<_>) = rays.iter().copied().unzip();
+        let view = RayRows { origin: &origin, direction: &direction };
+        let mut by_rows = vec![true; count];
+        tree.occluded_rows(&view, &bounds, &mut by_rows).expect("slices agree");
+        assert!(occluded == by_rows);
         let mut hits = 0;
         for (i, &(origin, direction)) in rays.iter().enumerate() {
             let alone = tree.intersect(origin, direction);
@@ -326,4 +341,8 @@ fn columns_of_different_lengths_are_refused() {
     let tree = SphereTree::from_rows(&[[0.0, 0.0, 0.0, 1.0]]).expect("one sphere");
     let rays = RayColumns { origin: [&[0.0], &[0.0], &[0.0]], direction: [&[1.0], &[0.0], &[]] };
     assert!(tree.occluded_columns(&rays, &[1.0], &mut [false]).is_err());
+    let rays = RayRows { origin: &[[0.0; 3]], direction: &[] };
+    assert!(tree.occluded_rows(&rays, &[1.0], &mut [false]).is_err());
+    let rays = RayRows { origin: &[[0.0; 3]], direction: &[[1.0; 3]] };
+    assert!(tree.occluded_rows(&rays, &[1.0], &mut []).is_err());
 }
