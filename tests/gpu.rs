@@ -71,7 +71,7 @@ fn what_the_device_does_is_told() {
     for (more, why) in [
         ([].as_slice(), "caustics are sampled"),
         (&["--no-caustics"], "the scene has glass"),
-        (&["--integrator", "ao", "--slice", "x>0"], "the scene has slices"),
+        (&["--integrator", "ao", "--slice", "x>0", "--slice-mode", "hide"], "the scene has slices"),
     ] {
         let (.., notes) = render("gpu", more);
         assert!(notes.contains("--device gpu has no effect") && notes.contains(why), "{notes}");
