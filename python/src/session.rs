@@ -24,6 +24,7 @@ use std::mem::take;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 /// Settings for a render, as the section `[render]` of a scene file.
@@ -69,15 +70,18 @@ impl From<RenderError> for Fault {
     }
 }
 
-/// Bytes per pixel of the finished picture: with alpha, denoised, with its error, and of the look.
-const FINISHED: u64 = 64;
+/// Bytes per pixel of the finished picture: with alpha, and of the look.
+const FINISHED: u64 = 48;
 
 /// Refuses a picture that does not fit into memory.
-fn check_memory(region: Region, statistics: bool, traced: bool) -> Result<(), Fault> {
+fn check_memory(region: Region, layers: &[Layer], denoised: bool) -> Result<(), Fault> {
     let Region { width, height, .. } = region;
     let finished = u64::from(width) * u64::from(height) * FINISHED;
+    let statistics = denoised || layers.iter().any(|layer| layer.is_statistic());
+    let traced = layers.iter().any(|layer| !layer.is_statistic());
     let layers = if traced { Layers::bytes(region) } else { 0 };
-    let need = Film::bytes(region, statistics) + layers + finished;
+    let denoising = if denoised { Denoiser::bytes(region) } else { 0 };
+    let need = Film::bytes(region, statistics) + layers + denoising + finished;
     memory::check(need).map_err(|shortage| {
         let size = format!("`size` is ({width}, {height}), but such a picture");
         Fault::Text(format!("{size} needs {shortage}; make it smaller, or render it in parts"))
@@ -97,6 +101,9 @@ pub(crate) struct Session {
     /// Row in the user's arrays of each sphere, unless they are the same.
     rows: Option<Arc<[u32]>>,
     pub(crate) render: ResumableRender,
+    /// Memory of the picture. The system takes a while to give that of a large one, so it is asked for while the render
+    /// runs: who interrupts does not wait for it.
+    memory: Option<JoinHandle<Vec<[f32; 3]>>>,
     /// Identity of the scene, for parts.
     pub(crate) identity: Option<Identity>,
 }
@@ -149,8 +156,7 @@ impl Session {
         let identity = part.is_some().then(|| Identity::of(scene));
         let samples = u64::from(width) * u64::from(height) * u64::from(settings.spp);
         let statistics = choice.is_some() || layers.iter().any(|layer| layer.is_statistic());
-        let traced = choice.is_some() || layers.iter().any(|layer| !layer.is_statistic());
-        check_memory(region, statistics, traced)?;
+        check_memory(region, &layers, choice.is_some())?;
         let builder = World::builder(scene.spheres.len(), samples);
         let world = if taken {
             World::build_taking(scene, builder)?
@@ -170,6 +176,9 @@ impl Session {
         let render = ResumableRender::begin_part(&world, &settings, &options, image_part)?;
         let (title, look) = (scene.title.clone(), scene.look);
         let annotations = scene.annotations.clone();
+        // Other numbers than 0, which would be pages that nobody has touched.
+        let pixels = width as usize * height as usize;
+        let memory = part.is_none().then(|| thread::spawn(move || vec![[f32::NAN; 3]; pixels]));
         Ok(Self {
             world,
             title,
@@ -181,6 +190,7 @@ impl Session {
             layers,
             rows,
             render,
+            memory,
             identity,
         })
     }
@@ -214,7 +224,8 @@ impl Session {
         let has_statistics = self.layers.iter().any(|layer| layer.is_statistic());
         let statistics = has_statistics.then(|| Statistics::of(self.render.film()));
         let noise = if stopped() { None } else { self.render.noise() };
-        let mut render = Render { noise, statistics, ..self.render.unmeasured() };
+        let memory = self.memory.take().and_then(|memory| memory.join().ok()).unwrap_or_default();
+        let mut render = Render { noise, statistics, ..self.render.unmeasured(memory) };
         let judged = self.denoiser.as_ref().filter(|_| !stopped()).and_then(|denoiser| {
             let options = self.finishing(cancel);
             denoiser.judge(&self.world, self.render.film(), &options)

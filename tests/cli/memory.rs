@@ -145,8 +145,7 @@ fn estimates_are_right_for_large_pictures() {
         let report = folder.json(&[&args[..], &[output], &layers].concat());
         let number = |name: &str| report["statistics"][name].as_f64().expect("a number");
         let ratio = number("estimated_peak_bytes") / number("peak_bytes");
-        // Beside other programs it falls from 0.94 to 0.81 with one layer: memory that one thread frees serves no other.
-        assert!((0.75..1.2).contains(&ratio), "{output} {layers:?}: {ratio}");
+        assert!((0.85..1.2).contains(&ratio), "{output} {layers:?}: {ratio}");
     }
 }
 

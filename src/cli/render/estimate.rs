@@ -4,6 +4,7 @@ use super::job::Job;
 use super::layers::{need_statistics, wanted};
 use crate::cli::contents::spheres;
 use crate::cli::failure::Failure;
+use spherule_render::denoise::Denoiser;
 use spherule_render::film::{Film, Region};
 use spherule_render::image::Format;
 use spherule_render::layers::Layers;
@@ -22,10 +23,7 @@ const OVERLAY: u64 = 16;
 
 /// Bytes per pixel of overlays with a transparent background, including the image of the ground without
 /// spheres.
-const MATTE: u64 = 50;
-
-/// Bytes per pixel of the denoised image, and of its tiles.
-const DENOISED: u64 = 32;
+const MATTE: u64 = 64;
 
 /// Estimated peak memory of a render, without the scene's columns, which are loaded already.
 #[derive(Clone, Debug)]
@@ -64,7 +62,7 @@ impl Estimate {
             world: footprint.resident(),
             film: Film::bytes(region, need_statistics(job) || denoised),
             output: output(job, &scene.look, region).max(if denoised {
-                denoising(region)
+                Denoiser::bytes(region)
             } else {
                 0
             }),
@@ -111,12 +109,6 @@ impl Estimate {
         };
         format!("{self} need {shortage}; {hint}")
     }
-}
-
-/// Bytes of the layers, the denoised image, its tiles and its error.
-fn denoising(region: Region) -> u64 {
-    let pixels = u64::from(region.width) * u64::from(region.height);
-    Layers::bytes(region) + pixels * DENOISED
 }
 
 /// Bytes of the layers or of the encoded file, whichever is more, because layers are dropped before the file

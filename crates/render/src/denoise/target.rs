@@ -81,6 +81,14 @@ pub struct Judged {
 }
 
 impl Denoiser {
+    /// Estimates the bytes of denoising a region, beside those of its film: features and their sums, and the denoised
+    /// picture with its error.
+    pub fn bytes(region: Region) -> u64 {
+        let denoised = size_of::<[f32; 3]>() + size_of::<f32>();
+        let pixels = u64::from(region.width) * u64::from(region.height);
+        ProgressiveLayers::bytes(region) + Layers::bytes(region) + pixels * denoised as u64
+    }
+
     /// Creates the denoiser of renders of `world` with these settings, in the region of `options`.
     ///
     /// # Errors

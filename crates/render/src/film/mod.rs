@@ -152,6 +152,23 @@ impl Film {
         region.width.div_ceil(TILE).saturating_mul(region.height.div_ceil(TILE))
     }
 
+    /// Splits the pixels of a region, row by row, into the rows of its tiles.
+    pub(crate) fn tile_rows<T>(
+        region: Region,
+        pixels: &mut [T],
+    ) -> impl Iterator<Item = Vec<&mut [T]>> {
+        let width = region.width as usize;
+        pixels.chunks_mut(width * TILE as usize).flat_map(move |band| {
+            let mut tiles: Vec<Vec<&mut [T]>> = Vec::new();
+            tiles.resize_with(width.div_ceil(TILE as usize), Vec::new);
+            for row in band.chunks_mut(width) {
+                let pieces = row.chunks_mut(TILE as usize);
+                tiles.iter_mut().zip(pieces).for_each(|(tile, piece)| tile.push(piece));
+            }
+            tiles
+        })
+    }
+
     /// Adds the samples and tiles of a film of the same region. Returns false if the two are
     /// incompatible; then this film is unusable.
     pub fn merge(&mut self, other: Self) -> bool {
@@ -213,8 +230,19 @@ impl Film {
 
     /// Returns the mean radiance of each pixel; black without samples.
     pub fn resolve(&self) -> Image {
-        let pixels = self.gather([0.0; 3], |_, tile| tile.sums.means(tile.samples).map(single));
-        Image { width: self.region.width, height: self.region.height, pixels }
+        self.resolve_in(Vec::new())
+    }
+
+    /// Does what [`Film::resolve`] does, in the memory of `pixels` if it has the right size: what the system has given
+    /// already is faster.
+    pub fn resolve_in(&self, mut pixels: Vec<[f32; 3]>) -> Image {
+        let Region { width, height, .. } = self.region;
+        let is_whole = self.tiles.len() == Self::tile_count(self.region) as usize;
+        if pixels.len() as u64 != self.region.area() || !is_whole {
+            pixels = vec![[0.0; 3]; self.region.area() as usize];
+        }
+        self.gather_in(&mut pixels, |_, tile| tile.sums.means(tile.samples).map(single));
+        Image { width, height, pixels }
     }
 
     /// Returns the number of samples of each pixel, row by row.
@@ -244,8 +272,21 @@ impl Film {
         T: Copy + Send + Sync,
         V: Iterator<Item = T>,
     {
+        let mut pixels = vec![empty; self.region.area() as usize];
+        self.gather_in(&mut pixels, of_tile);
+        pixels
+    }
+
+    /// Does what [`Film::gather`] does; pixels without a tile keep their values.
+    fn gather_in<'a, T, V>(
+        &'a self,
+        pixels: &mut [T],
+        of_tile: impl Fn(usize, &'a Tile) -> V + Sync,
+    ) where
+        T: Send,
+        V: Iterator<Item = T>,
+    {
         let width = self.region.width as usize;
-        let mut pixels = vec![empty; width * self.region.height as usize];
         // A band is the rows of a row of tiles.
         let bands = pixels.par_chunks_mut(width * TILE as usize).enumerate();
         bands.for_each(|(band, pixels)| {
@@ -259,7 +300,6 @@ impl Film {
                 }
             }
         });
-        pixels
     }
 }
 

@@ -21,6 +21,7 @@ use crate::world::World;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::mem::take;
 use std::ops::Range;
 
 /// Maximum number of samples of a pixel for layers: an edge then has 256 levels.
@@ -188,11 +189,9 @@ impl Layers {
         Self { width, height, pixels, statistics: None }
     }
 
-    /// Returns the bytes of the layers of a region during their computation.
+    /// Returns the bytes of the features of a region.
     pub fn bytes(region: Region) -> u64 {
-        // By tile, then by row; and the data of tiles.
-        let pixel = 2 * size_of::<Features>() as u64 + 10;
-        u64::from(region.width) * u64::from(region.height) * pixel
+        region.area() * size_of::<Features>() as u64
     }
 
     /// Returns the channels of some layers, for [`Image::write_layers`](crate::Image::write_layers);
@@ -218,17 +217,23 @@ pub fn layers(
     wanted: &[Layer],
 ) -> Result<Layers, RenderError> {
     let region = render::check(world, settings, options)?;
-    let tiles = 0..Film::tile_count(region);
-    let features = features(world, settings, options, wanted, tiles.clone())?;
+    let Region { width, height, .. } = region;
+    // Zeros are memory that is not there before a thread writes to it.
+    let mut pixels = bytemuck::zeroed_vec::<Features>(region.area() as usize);
+    let tiles = Film::tile_regions(region).zip(Film::tile_rows(region, &mut pixels)).collect();
+    trace(world, settings, options, wanted, tiles, |region, rows, features| {
+        for ((x, y), features) in region.morton().zip(features) {
+            rows[(y - region.y) as usize][(x - region.x) as usize] = features;
+        }
+    });
     if options.is_cancelled() {
-        let Region { width, height, .. } = region;
-        return Ok(Layers { width, height, pixels: Vec::new(), statistics: None });
+        pixels = Vec::new();
     }
-    Ok(Layers::gather(region, &[(tiles, features)]))
+    Ok(Layers { width, height, pixels, statistics: None })
 }
 
 /// Computes the features of some tiles of the region, by their numbers: tile by tile, in the order of
-/// [`Tile::pixels`](crate::film::Tile::pixels). Tiles that are not begun when the options' flag is set are left out.
+/// [`Tile::pixels`](crate::film::Tile::pixels). Tiles that are not begun when the options' flag is set have zeros.
 ///
 /// # Errors
 /// Those of [`render()`](crate::render::render()).
@@ -240,6 +245,33 @@ pub fn features(
     tiles: Range<u32>,
 ) -> Result<Vec<Features>, RenderError> {
     let region = render::check(world, settings, options)?;
+    let regions = Film::tile_regions(region).skip(tiles.start as usize).take(tiles.len());
+    let regions: Vec<Region> = regions.collect();
+    let count: u64 = regions.iter().map(|region| region.area()).sum();
+    let mut pixels = bytemuck::zeroed_vec::<Features>(count as usize);
+    let mut rest = pixels.as_mut_slice();
+    let of_tile = |region: Region| {
+        let (tile, others) = take(&mut rest).split_at_mut(region.area() as usize);
+        rest = others;
+        (region, tile)
+    };
+    let tiles = regions.into_iter().map(of_tile).collect();
+    trace(world, settings, options, wanted, tiles, |_, tile, features| {
+        tile.iter_mut().zip(features).for_each(|(pixel, features)| *pixel = features);
+    });
+    Ok(pixels)
+}
+
+/// Traces tiles until the options' flag is set, and has `write` store their features in the memory that is given with
+/// each of them.
+fn trace<Memory: Send>(
+    world: &World,
+    settings: &Settings,
+    options: &Options,
+    wanted: &[Layer],
+    tiles: Vec<(Region, Memory)>,
+    write: impl Fn(Region, &mut Memory, &mut dyn Iterator<Item = Features>) + Sync,
+) {
     let sampler = Sampler::new(settings.sampler, settings.seed, settings.spp);
     let filter = PixelFilter::new(settings.filter);
     let (tracer, elisions) = (options.tracer, options.elisions);
@@ -248,19 +280,12 @@ pub fn features(
     let traced = |layer: &Layer| *layer != Layer::Id && !layer.is_statistic();
     let sampled = wanted.iter().any(traced);
     let samples = if sampled { settings.spp.min(SAMPLES) } else { 0 };
-    let regions = Film::tile_regions(region).skip(tiles.start as usize).take(tiles.len());
-    let regions: Vec<Region> = regions.collect();
-    let features: Vec<Vec<Features>> = regions
-        .into_par_iter()
-        .filter(|_| !options.is_cancelled())
-        .map_init(
-            || Workspace::new(world, elisions),
-            |work, region| {
-                let mut layers = TileLayers::new(region);
-                layers.refine(&job, samples, work);
-                layers.features().collect()
-            },
-        )
-        .collect();
-    Ok(features.into_iter().flatten().collect())
+    tiles.into_par_iter().filter(|_| !options.is_cancelled()).for_each_init(
+        || Workspace::new(world, elisions),
+        |work, (region, mut memory)| {
+            let mut layers = TileLayers::new(region);
+            layers.refine(&job, samples, work);
+            write(region, &mut memory, &mut layers.features());
+        },
+    );
 }

@@ -37,6 +37,11 @@ pub(super) struct TileLayers {
 }
 
 impl ProgressiveLayers {
+    /// Returns the bytes of the sums of a region's samples.
+    pub fn bytes(region: Region) -> u64 {
+        region.area() * size_of::<Sums>() as u64
+    }
+
     /// Creates layers without samples, for the region of `options`.
     ///
     /// # Errors

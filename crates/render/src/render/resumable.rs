@@ -179,7 +179,7 @@ impl ResumableRender {
     /// Returns the image so far with its statistics.
     pub fn render(&self) -> Render {
         let statistics = self.statistics.then(|| Statistics::of(&self.state.film));
-        Render { noise: self.noise(), statistics, ..self.unmeasured() }
+        Render { noise: self.noise(), statistics, ..self.unmeasured(Vec::new()) }
     }
 
     /// Returns the error of the image so far, if the render has a target or statistics.
@@ -188,11 +188,12 @@ impl ResumableRender {
         measured.then(|| self.state.noise(self.settings.until_error.is_some())).flatten()
     }
 
-    /// Returns the same without statistics and error, which take a while for large pictures.
-    pub fn unmeasured(&self) -> Render {
+    /// Returns the same without statistics and error, which take a while for large pictures; in the memory of `pixels`, as
+    /// [`Film::resolve_in`].
+    pub fn unmeasured(&self, pixels: Vec<[f32; 3]>) -> Render {
         let Totals { counters, times, tasks, elapsed } = self.totals;
         Render {
-            image: self.state.film.resolve(),
+            image: self.state.film.resolve_in(pixels),
             samples: self.samples(),
             noise: None,
             statistics: None,
