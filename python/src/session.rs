@@ -222,15 +222,18 @@ impl Session {
     pub(crate) fn show(&mut self, cancel: &AtomicBool) -> Result<Shown, Fault> {
         let stopped = || cancel.load(Ordering::SeqCst);
         let has_statistics = self.layers.iter().any(|layer| layer.is_statistic());
-        let statistics = has_statistics.then(|| Statistics::of(self.render.film()));
-        let noise = if stopped() { None } else { self.render.noise() };
+        let statistics =
+            has_statistics.then(|| Statistics::of(self.render.film(), &Options::default()));
         let memory = self.memory.take().and_then(|memory| memory.join().ok()).unwrap_or_default();
-        let mut render = Render { noise, statistics, ..self.render.unmeasured(memory) };
+        let mut render = Render { statistics, ..self.render.unmeasured(memory) };
         let judged = self.denoiser.as_ref().filter(|_| !stopped()).and_then(|denoiser| {
             let options = self.finishing(cancel);
             denoiser.judge(&self.world, self.render.film(), &options)
         });
         let errors = judged.as_ref().map(|judged| (judged.before, judged.noise));
+        if errors.is_none() && !stopped() {
+            render.noise = self.render.noise();
+        }
         let mut is_denoised = false;
         if let Some(Judged { denoised: Some(denoised), .. }) = judged {
             is_denoised = true;
@@ -423,10 +426,8 @@ pub(crate) fn render<'py>(
             return Ok(None);
         }
         let shown = session.show(&shared.cancel);
-        if shared.cancel.load(Ordering::SeqCst) {
-            // Large pictures take a while to give their memory back; who interrupts does not wait for that.
-            rayon::spawn(move || drop(session));
-        }
+        // Large pictures take a while to give their memory back; nobody waits for that.
+        rayon::spawn(move || drop(session));
         shown.map(Some)
     };
     let (shown, interrupt) = Watcher::new(stop, report).run(py, pool, work)?;

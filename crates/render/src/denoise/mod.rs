@@ -145,10 +145,9 @@ pub fn is_worse(film: &Film, image: &Image, denoised: &Image) -> bool {
     sum > squares.sqrt()
 }
 
-/// Estimates the relative error of a denoised picture of this film, by its judging probes.
-pub fn error_of(film: &Film, denoised: &Denoised) -> Noise {
+/// Estimates the relative error of a denoised picture of this film, by its judging probes; `mean` is the film's radiance.
+fn error_of(film: &Film, mean: noise::Estimate, denoised: &Denoised) -> Noise {
     let Denoised { image, squared_error } = denoised;
-    let mean = noise::Estimate { value: film.mean(), ..noise::Estimate::default() };
     let measured = noise::squared_error_of(film, image, squared_error, Role::Judge);
     // Light that neither samples nor probes have found is missing in the denoised picture, too.
     let missing = noise::missing(film);
@@ -159,8 +158,9 @@ pub fn error_of(film: &Film, denoised: &Denoised) -> Noise {
 
 /// Returns the mean square of the picture's radiance, over pixels and channels.
 fn mean_square(image: &Image) -> f32 {
-    let squares = image.pixels.iter().flatten().map(|&x| f64::from(x).powi(2));
-    (squares.sum::<f64>() / (3 * image.pixels.len()) as f64) as f32
+    let squares =
+        noise::sum(&image.pixels, |pixel| pixel.iter().map(|&x| f64::from(x).powi(2)).sum());
+    (squares / (3 * image.pixels.len()) as f64) as f32
 }
 
 #[cfg(test)]

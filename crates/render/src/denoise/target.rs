@@ -150,14 +150,14 @@ impl Denoiser {
             return None;
         }
         let layers = progress.layers.layers(options);
-        let judged = self.judge_picture(film, &layers, before, options)?;
+        let judged = self.judge_picture((film, mean), &layers, before, options)?;
         progress.last = Some((total, judged));
         Some(progress)
     }
 
     fn judge_picture(
         &self,
-        film: &Film,
+        (film, mean): (&Film, Estimate),
         layers: &Layers,
         before: Noise,
         options: &Options,
@@ -166,13 +166,15 @@ impl Denoiser {
         go_on()?;
         let image = film.resolve();
         go_on()?;
-        let statistics = Statistics::of(film);
+        let statistics = Statistics::of(film, options);
+        go_on()?;
         let mut denoised = Denoised::black(image.width, image.height);
         denoise_until(&image, &statistics, layers, options, &mut denoised).then_some(())?;
         if self.choice == Choice::UnlessWorse && is_worse(film, &image, &denoised.image) {
             return Some(Judged { denoised: None, before, noise: before });
         }
-        let noise = error_of(film, &denoised);
+        go_on()?;
+        let noise = error_of(film, mean, &denoised);
         Some(Judged { denoised: Some(denoised), before, noise })
     }
 }

@@ -252,16 +252,18 @@ impl Film {
 
     /// Returns the variance of each pixel's mean, row by row and by channel: the variance of its
     /// samples over their number, times a gain. `gain` returns that of a tile as a function of the former, averaged over
-    /// channels. All 0 without sums of squares.
-    pub fn variance<G: Fn(f64) -> f64>(&self, gain: impl Fn(usize) -> G + Sync) -> Image {
+    /// channels, or `None` to leave the tile out. All 0 without sums of squares.
+    pub fn variance<G: Fn(f64) -> f64>(&self, gain: impl Fn(usize) -> Option<G> + Sync) -> Image {
         let pixels = self.gather([0.0; 3], |index, tile| {
-            let (gain, count) = (gain(index), f64::from(tile.samples.max(1)));
-            let of_mean = move |variance: [f64; 3]| {
+            let count = f64::from(tile.samples.max(1));
+            let of_mean = move |gain: &G, variance: [f64; 3]| {
                 let independent = variance.map(|channel| channel / count);
                 let factor = gain(independent.iter().sum::<f64>() / 3.0);
                 single(independent.map(|channel| channel * factor))
             };
-            tile.sums.variances(tile.samples).map(of_mean)
+            let gain = gain(index);
+            let variances = tile.sums.variances(tile.samples);
+            variances.map_while(move |variance| gain.as_ref().map(|gain| of_mean(gain, variance)))
         });
         Image { width: self.region.width, height: self.region.height, pixels }
     }

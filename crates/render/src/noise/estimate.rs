@@ -150,7 +150,7 @@ pub fn missing(film: &Film) -> Estimate {
 pub fn squared_error_of(film: &Film, image: &Image, expected: &[f32], role: Role) -> Estimate {
     let pairs = film.tiles.iter().flat_map(|tile| tile.probes.pairs(role));
     let expected_of = |pixel: usize| expected.get(pixel).map_or(0.0, |&error| f64::from(error));
-    let total = (0..expected.len()).map(expected_of).sum();
+    let total = sum(expected, |&error| f64::from(error));
     let total = Estimate { value: total, ..Estimate::default() };
     let products = pairs.map(|pair| {
         let (x, y) = (pair.x - film.region.x, pair.y - film.region.y);
@@ -160,6 +160,15 @@ pub fn squared_error_of(film: &Film, image: &Image, expected: &[f32], role: Role
         Estimate { value, variance: value * value, third: value.powi(3).max(0.0) }
     });
     products.fold(total, Add::add)
+}
+
+/// Returns the sum of a value of each pixel, with the same bits for any number of threads.
+pub(crate) fn sum<T: Sync>(pixels: &[T], value: impl Fn(&T) -> f64 + Sync) -> f64 {
+    /// Pixels that one thread adds up.
+    const TOGETHER: usize = 1 << 14;
+    let sums = pixels.par_chunks(TOGETHER).map(|pixels| pixels.iter().map(&value).sum());
+    let sums: Vec<f64> = sums.collect();
+    sums.iter().sum()
 }
 
 /// Estimates the mean radiance over pixels and channels from pilot and probes, independently of the

@@ -49,6 +49,7 @@ mod gain;
 mod plan;
 mod stop_condition;
 
+pub(crate) use estimate::sum;
 pub use estimate::{
     CONFIDENCE, Estimate, Noise, SquaredError, mean_radiance, missing, squared_error,
     squared_error_of,

@@ -151,11 +151,12 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// Returns the statistics of a film with sums of squares.
-    pub fn of(film: &Film) -> Self {
+    /// Returns the statistics of a film with sums of squares. Once the flag of the options is set, tiles have a variance
+    /// of 0.
+    pub fn of(film: &Film, options: &Options) -> Self {
         let variance = film.variance(|tile| {
-            let gain = noise::Gain::of(film, tile);
-            move |variance| gain.at(variance)
+            let gain = (!options.is_cancelled()).then(|| noise::Gain::of(film, tile))?;
+            Some(move |variance| gain.at(variance))
         });
         Self { variance, samples: film.samples() }
     }

@@ -178,7 +178,8 @@ impl ResumableRender {
 
     /// Returns the image so far with its statistics.
     pub fn render(&self) -> Render {
-        let statistics = self.statistics.then(|| Statistics::of(&self.state.film));
+        let options = Options::default();
+        let statistics = self.statistics.then(|| Statistics::of(&self.state.film, &options));
         Render { noise: self.noise(), statistics, ..self.unmeasured(Vec::new()) }
     }
 
