@@ -10,7 +10,7 @@ use spherule_particles::{
 use std::path::{Path, PathBuf};
 
 /// Trajectories with the four frames of `water.dcd`.
-const SAME: [&str; 13] = [
+const SAME: [&str; 15] = [
     "water.dcd",
     "water.xtc",
     "water.trr",
@@ -22,6 +22,8 @@ const SAME: [&str; 13] = [
     "wide_markers.dcd",
     "water.h5md",
     "water_latest.h5md",
+    "water_links.h5md",
+    "water_old_links.h5md",
     "water_mdtraj.h5",
     "water_netcdf4.nc",
 ];
@@ -139,6 +141,8 @@ fn steps_and_times_are_those_of_the_file() {
     assert_eq!(times("water.ncdf"), [(None, Some(0.0)), (None, Some(6.0))]);
     assert_eq!(times("water_netcdf4.nc"), times("water.ncdf"));
     assert_eq!(times("water.h5md"), times("water.trr"));
+    assert_eq!(times("water_links.h5md"), times("water.trr"));
+    assert_eq!(times("water_old_links.h5md"), times("water.trr"));
     // Steps at a constant distance, from an offset on.
     assert_eq!(times("water_latest.h5md"), [(Some(100), None), (Some(115), None)]);
     let units =
@@ -387,6 +391,20 @@ fn damaged_hdf5_is_refused() {
     let error = open(&other).expect_err("no particles");
     assert!(error.message.starts_with("is an HDF5 file, but neither H5MD"), "{error}");
     assert!(error.help.is_some_and(|help| help.contains("h5ls")));
+}
+
+#[test]
+fn soft_links_of_hdf5_that_go_in_circles_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("run.h5md");
+    let whole = std::fs::read(trajectory("water_old_links.h5md")).expect("a file");
+    // The link that is called `alias`, and leads to /data, leads to itself.
+    let link = whole.windows(6).position(|bytes| bytes == b"/data\0").expect("a link");
+    let mut circular = whole.clone();
+    circular[link..link + 6].copy_from_slice(b"alias\0");
+    std::fs::write(&path, circular).expect("a file");
+    let error = read_frame(&path, &at(1)).expect_err("a link to itself");
+    assert!(error.message.contains("soft links") && error.message.contains("alias"), "{error}");
 }
 
 #[test]

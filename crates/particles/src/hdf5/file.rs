@@ -14,6 +14,16 @@ pub(crate) const MAGIC: &[u8] = b"\x89HDF\r\n\x1A\n";
 /// Bytes of structures that may be read per byte of the file, and in any file.
 const STRUCTURES: (u64, u64) = (4, 1 << 16);
 
+/// The most soft links that are followed one after another.
+const MOST_SOFT_LINKS: usize = 16;
+
+/// Kinds of link messages.
+const HARD: u8 = 0;
+const SOFT: u8 = 1;
+
+/// The kind of an entry of a symbol table that is a soft link.
+const SOFT_ENTRY: u64 = 2;
+
 /// Longest name of a link in bytes.
 const LONGEST_NAME: u64 = 1 << 12;
 
@@ -33,6 +43,14 @@ pub(crate) struct File {
 pub(super) struct Sizes {
     pub(super) address: usize,
     pub(super) length: usize,
+}
+
+/// What a link leads to.
+enum Target {
+    /// The address of an object.
+    Object(u64),
+    /// A path from the group of the link, or from the root if it begins with a slash.
+    Path(String),
 }
 
 /// Reader of the fields of a structure, one after another; all are little-endian.
@@ -222,8 +240,51 @@ impl File {
         (version == 2).then_some(block)
     }
 
-    /// Returns the links of a group to objects of this file, in the order of the file; none for a dataset.
+    /// Returns the links of a group to objects of this file, in the order of the file, with the objects that soft links
+    /// lead to; none for a dataset. Soft links that lead nowhere are left out.
+    ///
+    /// # Errors
+    /// The file is damaged, or soft links lead to each other.
     pub(super) fn links(&mut self, group: u64) -> Result<Vec<(String, u64)>, FileError> {
+        let mut found = Vec::new();
+        for (name, target) in self.targets(group)? {
+            if let Some(object) = self.follow(group, target, 0)? {
+                found.push((name, object));
+            }
+        }
+        Ok(found)
+    }
+
+    /// Returns the object that a link of a group leads to, after some other soft links.
+    fn follow(
+        &mut self,
+        group: u64,
+        target: Target,
+        followed: usize,
+    ) -> Result<Option<u64>, FileError> {
+        let path = match target {
+            Target::Object(object) => return Ok(Some(object)),
+            Target::Path(path) => path,
+        };
+        if followed == MOST_SOFT_LINKS {
+            let message =
+                format!("has more than {MOST_SOFT_LINKS} soft links in a row, at `{path}`");
+            return Err(self.content.fault(message));
+        }
+        let mut at = if path.starts_with('/') { self.root } else { group };
+        for name in path.split('/').filter(|name| !matches!(*name, "" | ".")) {
+            let targets = self.targets(at)?.into_iter();
+            let Some((_, target)) = targets.into_iter().find(|(own, _)| own == name) else {
+                return Ok(None);
+            };
+            let Some(object) = self.follow(at, target, followed + 1)? else { return Ok(None) };
+            at = object;
+        }
+        Ok(Some(at))
+    }
+
+    /// Returns the links of a group as they are, in the order of the file.
+    fn targets(&mut self, group: u64) -> Result<Vec<(String, Target)>, FileError> {
         let mut links = Vec::new();
         for message in self.messages(group)? {
             let mut fields = self.fields(&message.data);
@@ -256,7 +317,7 @@ impl File {
         &mut self,
         tree: u64,
         heap: u64,
-        links: &mut Vec<(String, u64)>,
+        links: &mut Vec<(String, Target)>,
     ) -> Result<(), FileError> {
         let (address, length) = (self.sizes.address, self.sizes.length);
         let head = self.bytes(heap, (8 + 2 * length + address) as u64)?;
@@ -284,13 +345,16 @@ impl File {
             for entry in entries.chunks_exact(entry) {
                 let mut fields = self.fields(entry);
                 let (name, object) = (fields.number(address), fields.address().flatten());
-                // A cached entry of this type is a soft link.
-                let is_soft = fields.number(4) == Some(2);
-                let name = name.and_then(|at| names.get(usize::try_from(at).ok()?..));
-                let name = name.and_then(|name| name.split(|&byte| byte == 0).next());
-                if let (Some(name), Some(object), false) = (name, object, is_soft) {
-                    links.push((String::from_utf8_lossy(name).into_owned(), object));
-                }
+                let (kind, _) = (fields.number(4), fields.take(4));
+                let text = |at: u64| {
+                    let bytes = names.get(usize::try_from(at).ok()?..)?.split(|&byte| byte == 0);
+                    bytes.into_iter().next().map(lossy)
+                };
+                let target = match kind {
+                    Some(SOFT_ENTRY) => fields.number(4).and_then(text).map(Target::Path),
+                    _ => object.map(Target::Object),
+                };
+                links.extend(name.and_then(text).zip(target));
             }
         }
         Ok(())
@@ -507,15 +571,26 @@ fn continuation((at, length): (u64, u64), block: &Block) -> Option<Block> {
     Some(Block { at: at.checked_add(before)?, length, is_new, is_ordered })
 }
 
-/// Returns the name and the object of a hard link.
-fn link(mut fields: Fields) -> Option<(String, u64)> {
+/// Returns the name and the target of a link message; `None` for a link to another file.
+fn link(mut fields: Fields) -> Option<(String, Target)> {
     fields.byte().filter(|&version| version == 1)?;
     let flags = fields.byte()?;
-    let kind = if flags & 8 != 0 { fields.byte()? } else { 0 };
+    let kind = if flags & 8 != 0 { fields.byte()? } else { HARD };
     fields.take(if flags & 4 != 0 { 8 } else { 0 })?;
     fields.take(usize::from(flags & 0x10 != 0))?;
     let length = fields.number(1 << (flags & 3))?;
     let name = fields.take(usize::try_from(length).ok()?)?;
-    let object = fields.address()??;
-    (kind == 0).then(|| (String::from_utf8_lossy(name).into_owned(), object))
+    let target = match kind {
+        HARD => Target::Object(fields.address()??),
+        SOFT => {
+            let length = fields.number(2)?;
+            Target::Path(lossy(fields.take(usize::try_from(length).ok()?)?))
+        }
+        _ => return None,
+    };
+    Some((lossy(name), target))
+}
+
+fn lossy(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
 }
