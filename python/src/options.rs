@@ -196,15 +196,7 @@ impl StyleTable {
             }
         };
         let bonds = self.bonds.as_deref().map(BondSource::from_str).transpose().map_err(fault)?;
-        let model = match self.model.as_deref() {
-            Some(name) => model_of(name).map_err(fault)?,
-            None if bonds.as_ref().is_some_and(|bonds| *bonds != BondSource::None) => {
-                Model::BallAndStick
-            }
-            None => Model::SpaceFilling,
-        };
-        let usual = if model.draws_bonds() { BondSource::Auto } else { BondSource::None };
-        let bonds = bonds.unwrap_or(usual);
+        let model = self.model.as_deref().map(model_of).transpose().map_err(fault)?;
         if let Some(radius) =
             self.bond_radius.filter(|radius| !(*radius > 0.0 && radius.is_finite()))
         {

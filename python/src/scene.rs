@@ -358,12 +358,13 @@ impl Work {
         let path = Path::new(ARRAYS);
         let title = frame.title.clone();
         frame
-            .add_derived_columns(&style.columns(), &style.bonds)
-            .and_then(|()| frame.find_bonds(&style.bonds))
+            .add_derived_columns(&style.columns(), &style.bond_source())
+            .and_then(|()| frame.find_bonds(&style.bond_source()))
             .map_err(|message| FileError::whole_file(path, message))?;
         let mut particles = of_frame(path, frame, options)?;
         particles.materials.clone_from(&given.materials);
         let legend = style.apply(path, &mut particles)?;
+        let is_crystal = style.draws_crystal(&particles);
         let refused = |why: spherule::scene::particles::PeriodicError| {
             FileError::whole_file(path, why.to_string())
         };
@@ -403,7 +404,7 @@ impl Work {
             }
             look.cell = given.look.cell;
         }
-        if staging.show_cell {
+        if staging.show_cell || is_crystal {
             scene.look.cell = cell;
         }
         if let Some(keys) = self.keys.get("render") {

@@ -251,19 +251,12 @@ impl AppearanceArgs {
         radii.for_each(|radius| *radius *= radius_scale);
         let select = self.select.as_deref().cloned();
         let coloring = self.coloring();
-        let given = self.bonds.as_deref().cloned();
-        let bonded = given.as_ref().is_some_and(|bonds| *bonds != BondSource::None);
-        let usual = if bonded { Model::BallAndStick } else { Model::SpaceFilling };
-        let model = self.model.unwrap_or(usual);
-        let usual = if model.draws_bonds() { BondSource::Auto } else { BondSource::None };
-        let bonds = given.unwrap_or(usual);
-        let bond_radius = self.bond_radius;
         ParticleStyle {
             select,
             coloring,
-            model,
-            bonds,
-            bond_radius,
+            model: self.model,
+            bonds: self.bonds.as_deref().cloned(),
+            bond_radius: self.bond_radius,
             opacity: self.opacity.as_deref().cloned(),
             translucent: self.translucent.as_deref().cloned(),
             arrows: self.arrows(),

@@ -196,6 +196,36 @@ fn bonds_are_drawn_where_they_are_asked_for() {
 }
 
 #[test]
+fn crystals_are_balls_and_sticks_in_their_cell() {
+    let folder = Folder::new();
+    folder.write(
+        "salt.poscar",
+        "salt\n1\n3 0 0\n0 3 0\n0 0 3\nZn S\n1 1\nDirect\n0.1 0.1 0.1\n0.6 0.6 0.6\n",
+    );
+    let pixels = |file: &str, more: &[&str]| {
+        let usual = ["render", file, "--size", "48x48", "--spp", "4", "-o", "a.pfm"];
+        folder.succeed(&[&usual, more].concat());
+        folder.read("a.pfm")
+    };
+    let crystal = pixels("salt.poscar", &[]);
+    let named = ["--model", "ball-and-stick"];
+    assert!(crystal == pixels("salt.poscar", &[&named[..], &["--cell"]].concat()));
+    assert!(crystal != pixels("salt.poscar", &named));
+    let spheres = pixels("salt.poscar", &["--model", "space-filling"]);
+    assert!(crystal != spheres && spheres == pixels("salt.poscar", &["--bonds", "none"]));
+    // Bonds that a column needs are not drawn, and do not make a crystal of molecules.
+    folder.write("water.xyz", WATER);
+    let by_column = ["--select", "coordination >= 0"];
+    assert!(pixels("water.xyz", &by_column) == pixels("water.xyz", &[]));
+    assert!(crystal == pixels("salt.poscar", &by_column));
+    // The cell needs the whole image.
+    let part = ["render", "salt.poscar", "-o", "a.png", "--part", "1/2"];
+    let refusal = folder.run(&part);
+    assert!(text(&refusal.stderr).contains("--model"), "{}", text(&refusal.stderr));
+    folder.succeed(&[&part[..], &named, &["--size", "48x48", "--spp", "4"]].concat());
+}
+
+#[test]
 fn bonds_that_cannot_be_drawn_are_refused() {
     let folder = Folder::new();
     folder.write("water.xyz", WATER);

@@ -46,8 +46,8 @@ impl Derived {
             columns.wanted.iter().filter_map(|name| Self::named(name)).collect();
         derived.dedup();
         let needs_bonds = derived.iter().any(|column| column.within.is_none());
-        if options.bonds == BondSource::None && needs_bonds {
-            options.bonds = BondSource::Auto;
+        if needs_bonds {
+            options.bonds = options.bonds.for_all();
         }
         (derived, options)
     }
@@ -85,7 +85,7 @@ impl Derived {
 impl ParticleFrame {
     /// Adds those of the named columns that follow from neighbors, `coordination` and `cluster`, as reading a file with
     /// [`Columns::wanted`](super::Columns::wanted) does. Bonds that they need come from `source`, or from
-    /// [`BondSource::Auto`] if that is none.
+    /// [`BondSource::Auto`] where that finds none.
     ///
     /// # Errors
     ///
@@ -97,8 +97,7 @@ impl ParticleFrame {
     ) -> Result<(), String> {
         let derived: Vec<Derived> = names.iter().filter_map(|name| Derived::named(name)).collect();
         if derived.iter().any(|column| column.within.is_none()) {
-            let drops = *source == BondSource::None;
-            self.find_bonds(if drops { &BondSource::Auto } else { source })?;
+            self.find_bonds(&source.for_all())?;
         }
         derived.iter().try_for_each(|column| column.add(self))
     }

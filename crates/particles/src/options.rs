@@ -306,7 +306,7 @@ pub struct ReadOptions {
 impl ReadOptions {
     /// Returns whether bonds that the file lists are read.
     pub(crate) fn reads_bonds(&self) -> bool {
-        matches!(self.bonds, BondSource::Auto | BondSource::File)
+        matches!(self.bonds, BondSource::Auto | BondSource::File | BondSource::OfCrystals)
     }
 
     /// Checks that every number is in range.

@@ -23,8 +23,8 @@ pub struct Frames {
     reader: Box<dyn FrameReader>,
     path: PathBuf,
     bonds: BondSource,
-    /// True if only other columns or whole molecules need the bonds.
-    drops_bonds: bool,
+    /// The source that is asked for: columns and whole molecules may need bonds of others.
+    wanted_bonds: BondSource,
     whole: bool,
     derived: Vec<Derived>,
     shapes: ShapeColumns,
@@ -52,8 +52,8 @@ impl Frames {
     /// The file cannot be read, or its format is unknown.
     pub fn open(path: &Path, options: &ReadOptions) -> Result<Self, FileError> {
         let (derived, mut inner) = Derived::take(options);
-        if options.whole && inner.bonds == BondSource::None {
-            inner.bonds = BondSource::Auto;
+        if options.whole {
+            inner.bonds = inner.bonds.for_all();
         }
         if let Some(align) = &options.align {
             inner.columns.wanted.extend_from_slice(align.columns());
@@ -72,7 +72,7 @@ impl Frames {
             reader,
             path: path.to_owned(),
             bonds: inner.bonds,
-            drops_bonds: options.bonds == BondSource::None,
+            wanted_bonds: options.bonds.clone(),
             whole: options.whole,
             derived,
             shapes,
@@ -130,9 +130,12 @@ impl Frames {
             history.add(&self.path, &mut frame)?;
         }
         self.passed += 1;
-        if self.drops_bonds {
-            frame.bonds = None;
-        }
+        let has_bonds = match self.wanted_bonds {
+            BondSource::None => false,
+            BondSource::OfCrystals => frame.is_crystal(),
+            BondSource::Auto | BondSource::File | BondSource::Rules(_) => true,
+        };
+        frame.bonds = frame.bonds.filter(|_| has_bonds);
         Ok(Some(frame))
     }
 

@@ -262,6 +262,25 @@ fn malformed_bonds_are_reported_at_their_line() {
 }
 
 #[test]
+fn crystals_have_bonds_where_others_are_not_asked_for() {
+    let crystal = "salt\n1\n3 0 0\n0 3 0\n0 0 3\nZn S\n1 1\nDirect\n0.1 0.1 0.1\n0.6 0.6 0.6\n";
+    let molecule = "2\n\nO 0 0 0\nH 0.9 0 0\n";
+    let bonds = |content: &str, wanted: &[&str]| {
+        let mut options = ReadOptions { bonds: BondSource::OfCrystals, ..ReadOptions::default() };
+        options.columns.wanted = wanted.iter().map(|&name| name.to_owned()).collect();
+        let frame = read_frame(&File::new(content).path(), &options).expect("a frame");
+        assert_eq!(frame.numbers.len(), wanted.len());
+        frame.bonds.map(|bonds| bonds.len())
+    };
+    let without_element = crystal.replace("Zn", "Xx");
+    for wanted in [&[][..], &["coordination"]] {
+        assert_eq!(bonds(crystal, wanted), Some(8));
+        assert_eq!(bonds(molecule, wanted), None);
+    }
+    assert_eq!(bonds(&without_element, &[]), None);
+}
+
+#[test]
 fn bonds_of_a_topology_follow_the_frames() {
     let frame = File::new("3\n\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n");
     for (topology, partial) in [(PSF, false), (SDF, false), (PDB, true)] {

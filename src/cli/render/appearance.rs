@@ -23,7 +23,7 @@ pub(super) fn with_columns(source: Source, looks: &ParticleStyle) -> Result<Sour
     match source {
         Source::Particles(path, mut options) => {
             options.columns.wanted = looks.columns();
-            options.bonds = looks.bonds.clone();
+            options.bonds = looks.bond_source();
             Ok(Source::Particles(path, options))
         }
         other if *looks == ParticleStyle::default() => Ok(other),
@@ -41,6 +41,8 @@ pub(super) struct Loaded {
     /// The color scale, if colors represent numbers.
     pub(super) legend: Option<Legend>,
     pub(super) cell: Option<Cell>,
+    /// True if the particles are drawn as a crystal because nothing else is asked for.
+    pub(super) is_crystal: bool,
     /// The orientation of the particles, if the scene is of particles.
     pub(super) orientation: Option<Orientation>,
     pub(super) facts: FrameFacts,
@@ -58,13 +60,24 @@ pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Loaded, Failur
         job.views.refuse_cells()?;
         let (facts, scene) = (FrameFacts::default(), job.source.load()?);
         let (legend, cell, orientation, focus) = (None, None, None, None);
-        return Ok(Loaded { scene, legend, cell, orientation, facts, focus, arrow_sizes: None });
+        let (is_crystal, arrow_sizes) = (false, None);
+        return Ok(Loaded {
+            scene,
+            legend,
+            cell,
+            is_crystal,
+            orientation,
+            facts,
+            focus,
+            arrow_sizes,
+        });
     };
     let mut particles = match given {
         Some(particles) => particles,
         None => particles::read(path, options)?,
     };
     let legend = job.looks.apply(path, &mut particles)?;
+    let is_crystal = job.looks.draws_crystal(&particles);
     let cell = job.views.repeat(path, &mut particles)?;
     let focus = focus(job, path, &particles)?;
     let facts = FrameFacts::of(job, &particles);
@@ -74,7 +87,7 @@ pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Loaded, Failur
     let arrow_sizes = particles.arrows.sizes;
     let scene = job.preset().unwrap_or_default().scene(particles, &title, &orientation);
     let orientation = Some(orientation);
-    Ok(Loaded { scene, legend, cell, orientation, facts, focus, arrow_sizes })
+    Ok(Loaded { scene, legend, cell, is_crystal, orientation, facts, focus, arrow_sizes })
 }
 
 /// Returns the center of the particle in focus, if the focus is a particle.

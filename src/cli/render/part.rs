@@ -86,7 +86,7 @@ pub(super) fn image_part(job: &Job, region: Region, scene: &Scene) -> Result<Ima
     if !scene.look.is_plain() {
         return refuse(
             &"--cell, --background transparent, --preset depthcue and outline, and the same in a scene need the whole \
-              image; remove them with --part",
+              image; remove them with --part. The cell of a crystal is left out with --model NAME",
         );
     }
     part.of_image(&whole, job.split).or_else(|error| refuse(&format!("--part: {error}")))

@@ -87,7 +87,7 @@ impl Staged {
         let start = Instant::now();
         let loaded = appearance::load(job, given)?;
         let appearance::Loaded { mut scene, legend, cell, orientation, mut facts, .. } = loaded;
-        let appearance::Loaded { focus, arrow_sizes, .. } = loaded;
+        let appearance::Loaded { is_crystal, focus, arrow_sizes, .. } = loaded;
         let box_of = cell.as_ref().map(Cell::bounds);
         let path = job.source.name().into_owned();
         let cuts = job.slices.cut(&mut scene, Path::new(&path), box_of, job.looks.allow_empty)?;
@@ -98,7 +98,7 @@ impl Staged {
         check_region(job, &scene)?;
         let load = start.elapsed();
         job.style.set(job.preset(), &mut scene);
-        job.views.show_cell(&mut scene, cell.as_ref());
+        job.views.show_cell(&mut scene, cell.as_ref(), is_crystal);
         check_alpha(&scene.look, job.format)?;
         job.picture.settings.apply(&mut scene.settings);
         if job.part.is_some() {

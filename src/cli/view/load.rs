@@ -14,7 +14,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use spherule_render::World;
 use spherule_render::scene::particles::{
-    self, ArrowSizes, Cell, Codes, Coloring, ColumnColors, FrameChoice, Kind, Kinds, Legend,
+    self, ArrowSizes, Cell, Codes, Coloring, ColumnColors, FrameChoice, Kind, Kinds, Legend, Model,
     NumberColumn, Orientation, ParticleStyle, Particles, ReadOptions, ReadProgress, Role,
     TextColumn,
 };
@@ -120,7 +120,9 @@ impl Base {
         options.progress = progress.read.clone();
         let mut particles = particles::read(path, &options)?;
         let more_columns = path.is_file() && has_many_values(&particles);
-        let select = ParticleStyle { select: job.looks.select.clone(), ..ParticleStyle::default() };
+        // All else is applied to the particles of each picture.
+        let (select, model) = (job.looks.select.clone(), Some(Model::SpaceFilling));
+        let select = ParticleStyle { select, model, ..ParticleStyle::default() };
         select.apply(path, &mut particles)?;
         job.views.repeat(path, &mut particles)?;
         options.progress = ReadProgress::default();
@@ -167,6 +169,8 @@ struct StyledScene {
     labels: Labels,
     legend: Option<Legend>,
     cell: Option<Cell>,
+    /// True if the particles are drawn as a crystal because nothing else is asked for.
+    is_crystal: bool,
     /// The orientation of the particles, if the scene is of particles.
     orientation: Option<Orientation>,
     facts: FrameFacts,
@@ -186,7 +190,7 @@ impl StyledScene {
     ) -> Result<Self, Failure> {
         let legend = apply_style(job, content, arrow_sizes, &mut particles)?;
         let arrow_sizes = particles.arrows.sizes;
-        let cell = particles.cell;
+        let (cell, is_crystal) = (particles.cell, job.looks.draws_crystal(&particles));
         let name = job.source.name();
         let focus = focus(job, Path::new(name.as_ref()), &particles)?;
         let facts = match scene {
@@ -208,7 +212,7 @@ impl StyledScene {
             orientation = Some(found);
             preset.or(job.preset()).unwrap_or_default().scene(particles, &title, &found)
         };
-        Ok(Self { scene, labels, legend, cell, orientation, facts, focus, arrow_sizes })
+        Ok(Self { scene, labels, legend, cell, is_crystal, orientation, facts, focus, arrow_sizes })
     }
 }
 
@@ -263,7 +267,7 @@ impl Loader {
             false,
         )?;
         job.style.set(job.preset(), &mut scene);
-        job.views.show_cell(&mut scene, cell.as_ref());
+        job.views.show_cell(&mut scene, cell.as_ref(), styled.is_crystal);
         annotate(job, &mut scene, legend.as_ref(), &styled.facts)?;
         job.picture.settings.apply(&mut scene.settings);
         job.views.frame(&mut scene, orientation.as_ref(), None, &cuts)?;

@@ -25,9 +25,14 @@ impl ViewArgs {
         Ok(())
     }
 
-    /// Draws the cell if `--cell` is given.
-    pub(in crate::cli) fn show_cell(&self, scene: &mut Scene, cell: Option<&Cell>) {
-        if self.cell {
+    /// Draws the cell if `--cell` is given, and that of a crystal.
+    pub(in crate::cli) fn show_cell(
+        &self,
+        scene: &mut Scene,
+        cell: Option<&Cell>,
+        is_crystal: bool,
+    ) {
+        if self.cell || is_crystal {
             scene.look.cell = cell.copied();
         }
     }

@@ -178,12 +178,13 @@ impl ParticleFrame {
         }
         match source {
             BondSource::None => self.bonds = None,
+            BondSource::OfCrystals if !self.is_crystal() => self.bonds = None,
             BondSource::File if self.bonds.is_none() && !self.is_empty() => {
                 return Err("has no bonds in it; `auto` finds them by distance".to_owned());
             }
             BondSource::File => (),
             BondSource::Rules(rules) => self.bonds = Some(from_distance(self, rules)?),
-            BondSource::Auto => {
+            BondSource::Auto | BondSource::OfCrystals => {
                 let has_elements = self.kinds.table.iter().any(|kind| kind.element.is_some());
                 let needs =
                     self.bonds.as_ref().is_none_or(|bonds| bonds.partial || bonds.is_empty());

@@ -23,6 +23,8 @@ pub enum BondSource {
     Auto,
     /// Bonds of the file only; an error if its format has none.
     File,
+    /// [`BondSource::Auto`] for crystals ([`ParticleFrame::is_crystal`]), no bonds for others.
+    OfCrystals,
     /// No bonds.
     #[default]
     None,
@@ -157,6 +159,16 @@ impl Cutoffs {
         let longest = |one: usize| (0..count).map(|other| length(one, other)).fold(0.0, f64::max);
         let reach = (0..count).map(longest).collect();
         Self { class, count, squares, reach, least: least * least }
+    }
+}
+
+impl BondSource {
+    /// Returns a source that also finds the bonds of particles that have none by this one.
+    pub(crate) fn for_all(&self) -> Self {
+        match self {
+            Self::None | Self::OfCrystals => Self::Auto,
+            Self::Auto | Self::File | Self::Rules(_) => self.clone(),
+        }
     }
 }
 

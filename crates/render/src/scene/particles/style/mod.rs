@@ -42,10 +42,11 @@ pub struct ParticleStyle {
     pub select: Option<Selection>,
     /// Source of colors.
     pub coloring: Coloring,
-    /// The way in which particles and bonds are drawn.
-    pub model: Model,
-    /// Source of bonds, for [`ReadOptions::bonds`](super::ReadOptions::bonds).
-    pub bonds: BondSource,
+    /// The way in which particles and bonds are drawn; `None` for balls and sticks if `bonds` are asked for and for
+    /// crystals, and else for spheres.
+    pub model: Option<Model>,
+    /// Source of bonds; `None` for those that the model needs.
+    pub bonds: Option<BondSource>,
     /// Radius of the sticks of bonds; `None` for the model's usual one.
     pub bond_radius: Option<f64>,
     /// Opacity of the particles that `translucent` selects; `None` for [`GHOST`] if there is a selection, and else for opaque
@@ -74,6 +75,22 @@ impl ParticleStyle {
             columns.extend(others);
         }
         columns
+    }
+
+    /// Returns the source of bonds, for [`ReadOptions::bonds`](super::ReadOptions::bonds).
+    pub fn bond_source(&self) -> BondSource {
+        match (&self.bonds, self.model) {
+            (Some(source), _) => source.clone(),
+            (None, Some(model)) if model.draws_bonds() => BondSource::Auto,
+            (None, Some(_)) => BondSource::None,
+            (None, None) => BondSource::OfCrystals,
+        }
+    }
+
+    /// Returns whether particles are drawn as a crystal because nothing else is asked for: as balls and sticks in their
+    /// cell.
+    pub fn draws_crystal(&self, particles: &Particles) -> bool {
+        self.bond_source() == BondSource::OfCrystals && particles.bonds.is_some()
     }
 
     /// Returns the columns that this style names.
@@ -126,7 +143,9 @@ impl ParticleStyle {
         if let Some(arrows) = &self.arrows {
             arrows.apply(path, particles)?;
         }
-        self.model.apply(particles, self.bond_radius);
+        let has_bonds = self.bond_source() != BondSource::None && particles.bonds.is_some();
+        let usual = if has_bonds { Model::BallAndStick } else { Model::SpaceFilling };
+        self.model.unwrap_or(usual).apply(particles, self.bond_radius);
         let table = &particles.kinds.table;
         let known =
             |style: &&TypeStyle| !self.allow_empty || style.check_known(path, table).is_ok();
