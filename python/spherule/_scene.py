@@ -43,7 +43,9 @@ class Scene:
         colors: ``"jmol"`` or ``"cpk"``: colors of elements.
         types: For names of types or elements: ``{"radius": 1.2, "color": "gold", "material": "metal"}``, and
             ``"opacity"``.
-        model: ``"space-filling"``, ``"ball-and-stick"`` or ``"licorice"``: whether bonds are drawn, as sticks.
+        model: ``"space-filling"``, ``"ball-and-stick"`` or ``"licorice"``: whether bonds are drawn, as sticks. Without
+            it and without ``bonds``, crystals from CIF, POSCAR, XSF or CFG are balls and sticks in their cell: at most
+            10,000 atoms of known elements, periodic in all directions.
         bonds: ``"auto"`` for those of the particles, or else by covalent radii; ``"file"`` for those of the
             particles alone, ``"none"``, or rules such as ``"C-C<1.7,*-H<1.2"``;
             ``bond_radius`` is the radius of their sticks.

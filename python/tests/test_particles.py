@@ -374,3 +374,18 @@ def test_vectors_are_drawn_as_arrows(program, tmp_path):
 def test_arrows_that_are_none_are_refused_by_name(options, message):
     with pytest.raises(spherule.Error, match=message):
         spherule.render([[0, 0, 0], [5, 0, 0]], radius=1, size=(20, 10), spp=1, **options)
+
+
+def test_crystals_are_balls_and_sticks_in_their_cell(tmp_path):
+    rows = "0 0 0\n0 .5 .5\n.5 0 .5\n.5 .5 0\n.5 .5 .5\n.5 0 0\n0 .5 0\n0 0 .5\n"
+    (tmp_path / "POSCAR").write_text(f"NaCl\n5.64\n1 0 0\n0 1 0\n0 0 1\nNa Cl\n4 4\nDirect\n{rows}")
+
+    def saved(**options):
+        scene = spherule.Scene.load(tmp_path / "POSCAR", **options)
+        scene.save(tmp_path / "scene.toml")
+        text = (tmp_path / "scene.toml").read_text()
+        return len(scene), "[[stick]]" in text, "\ncell = " in text
+
+    assert saved() == (8, True, True)
+    assert saved(model="space-filling") == saved(bonds="none") == (8, False, False)
+    assert saved(model="ball-and-stick") == (8, True, False)
