@@ -210,7 +210,12 @@ impl Session {
         let (world, denoiser) = (&self.world, self.denoiser.as_ref());
         // Without a pause, the watcher's flag ends the render by itself: at once, not after the next report.
         let cancel = if slice.is_some() { &pause } else { &shared.cancel };
-        let options = Options { cancel: Some(cancel), progress: Some(&show), ..Options::default() };
+        let options = Options {
+            cancel: Some(cancel),
+            progress: Some(&show),
+            features: denoiser.is_some(),
+            ..Options::default()
+        };
         let judged = |film: &Film| denoiser?.noise(world, film, &options);
         let judge = denoiser.is_some().then_some(&judged as &Judge);
         let end = self.render.run(world, &Options { judge, ..options });

@@ -35,6 +35,7 @@ const STATISTICS: Options = Options {
     progress: None,
     cancel: None,
     statistics: true,
+    features: false,
     judge: None,
     elisions: spherule_render::render::Elisions::ALL,
 };

@@ -273,6 +273,7 @@ fn trace(
         tracer: job.tracer,
         region: Some(prepared.region),
         statistics: layers::need_statistics(job) || prepared.denoise.is_some(),
+        features: prepared.denoise.is_some(),
         cancel: Some(signals::stop()),
         ..Options::default()
     };

@@ -165,7 +165,8 @@ impl Renderer {
         options: &Options,
     ) -> Result<Option<Plain>, RenderError> {
         let (world, settings) = (&self.stage.world, &request.settings);
-        let options = Options { statistics: true, ..*options };
+        let features = choice(settings.denoise).is_some();
+        let options = Options { statistics: true, features, ..*options };
         let extends = |refined: &mut Refined| {
             refined.camera == request.camera && refined.render.extend(settings).is_ok()
         };

@@ -6,8 +6,8 @@
 //! is covered. So each pixel is replaced by the prediction of a weighted linear regression on its neighbors (Moon et
 //! al., "Adaptive Rendering Based on Weighted Local Regression", TOG 2014; Bitterli et al., "Nonlinearly Weighted
 //! First-Order Regression for Denoising Monte Carlo Renderings", CGF 2016). Radiance is divided by the albedo before,
-//! and multiplied by it after, so that colors are not blurred. Features come from camera rays of the picture's own
-//! samples, so they have its silhouettes, including its lens blur and pixel filter.
+//! and multiplied by it after, so that colors are not blurred. Features come from the camera rays of the picture's own
+//! samples, and are recorded with them, so they have its silhouettes, including its lens blur and pixel filter.
 //!
 //! # The choice of the window
 //!
@@ -38,6 +38,7 @@
 
 mod choose;
 mod columns;
+mod features;
 mod regression;
 mod target;
 mod tile;

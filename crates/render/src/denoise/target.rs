@@ -1,10 +1,11 @@
 //! Renders whose denoised picture has an error target.
 
+use super::features::MissingFeatures;
 use super::{Denoised, denoise_until, error_of, is_worse};
 use crate::film::{Film, Region};
-use crate::layers::{Layers, ProgressiveLayers, SAMPLES};
+use crate::layers::Layers;
 use crate::noise::{self, Estimate, Noise};
-use crate::render::{Options, RenderError, Statistics};
+use crate::render::{self, Options, RenderError, Statistics};
 use crate::scene::{Material, NamedMaterial};
 use crate::settings::Settings;
 use crate::world::World;
@@ -48,14 +49,13 @@ pub fn max_samples(region: Region, spheres: usize, materials: &[NamedMaterial]) 
 
 /// Denoises a render, as it is refined, and measures the error of the result.
 pub struct Denoiser {
-    settings: Settings,
     choice: Choice,
     progress: Mutex<Progress>,
 }
 
-/// Layers accumulated and the last result.
+/// Features that films have not recorded, and the last result.
 struct Progress {
-    layers: ProgressiveLayers,
+    missing: MissingFeatures,
     /// The last result, unless it was returned, and the number of samples that it was made from.
     last: Option<(u64, Judged)>,
 }
@@ -86,7 +86,7 @@ impl Denoiser {
     pub fn bytes(region: Region) -> u64 {
         let denoised = size_of::<[f32; 3]>() + size_of::<f32>();
         let pixels = u64::from(region.width) * u64::from(region.height);
-        ProgressiveLayers::bytes(region) + Layers::bytes(region) + pixels * denoised as u64
+        MissingFeatures::bytes(region) + Layers::bytes(region) + pixels * denoised as u64
     }
 
     /// Creates the denoiser of renders of `world` with these settings, in the region of `options`.
@@ -99,9 +99,9 @@ impl Denoiser {
         options: &Options,
         choice: Choice,
     ) -> Result<Self, RenderError> {
-        let layers = ProgressiveLayers::begin(world, settings, options)?;
-        let progress = Mutex::new(Progress { layers, last: None });
-        Ok(Self { settings: settings.clone(), choice, progress })
+        render::check(world, settings, options)?;
+        let missing = MissingFeatures::new(settings);
+        Ok(Self { choice, progress: Mutex::new(Progress { missing, last: None }) })
     }
 
     /// Denoises the picture of a film that has statistics, and judges it; with less than two samples per pixel the
@@ -145,11 +145,10 @@ impl Denoiser {
             progress.last = Some((total, Judged { denoised: None, before, noise: before }));
             return Some(progress);
         }
-        let settings = Settings { spp: least.min(SAMPLES), ..self.settings.clone() };
-        if !progress.layers.refine(world, &settings, options) {
+        if !progress.missing.trace(world, film, options) {
             return None;
         }
-        let layers = progress.layers.layers(options);
+        let layers = progress.missing.layers(film, options);
         let judged = self.judge_picture((film, mean), &layers, before, options)?;
         progress.last = Some((total, judged));
         Some(progress)

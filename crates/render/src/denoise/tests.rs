@@ -1,5 +1,6 @@
 use super::*;
 use crate::denoise::columns::Columns;
+use crate::denoise::features::MissingFeatures;
 use crate::denoise::regression::{SQUARE, predict, predict_by_squares};
 use crate::lanes::{F32x16, Lanes, MAX_LANES};
 use crate::layers::{Features, Layer, layers};
@@ -285,4 +286,82 @@ fn limits_depend_on_size_spheres_and_materials() {
     let more = [1, 1 << 10, 1 << 14, 1 << 20]
         .map(|spheres| max_samples(region(512, 512), spheres, &field));
     assert!(more.is_sorted_by(|a, b| a >= b) && more[0] > more[3], "{more:?}");
+}
+
+/// Renders 20 samples and then all, with or without recording features, and returns the render.
+fn render_in_two_parts(world: &World, settings: &Settings, features: [bool; 2]) -> ResumableRender {
+    let of = |features| Options { statistics: true, features, ..Options::default() };
+    let first = Settings { spp: 20, ..settings.clone() };
+    let mut render = ResumableRender::begin(world, &first, &of(features[0])).unwrap();
+    render.run(world, &of(features[0]));
+    render.extend(settings).unwrap();
+    render.run(world, &of(features[1]));
+    render
+}
+
+#[test]
+fn recorded_features_are_those_that_are_traced() {
+    let (mut scene, _) = scene();
+    scene.settings.spp = 41;
+    let world = World::build(&scene).unwrap();
+    let features = |kept: [bool; 2]| {
+        let render = render_in_two_parts(&world, &scene.settings, kept);
+        let mut missing = MissingFeatures::new(&scene.settings);
+        assert!(missing.trace(&world, render.film(), &Options::default()));
+        missing.layers(render.film(), &Options::default())
+    };
+    let traced = features([false; 2]);
+    for kept in [[true; 2], [false, true]] {
+        assert_eq!(features(kept), traced, "{kept:?}");
+    }
+}
+
+#[test]
+fn features_are_those_of_layers() {
+    let (mut scene, _) = scene();
+    for opacity in [1.0, 0.5] {
+        if opacity < 1.0 {
+            // A translucent ground is refused.
+            scene.ground = None;
+            let white = Material::Lambertian { color: Rgb::splat(0.6) };
+            scene.materials.iter_mut().for_each(|row| row.material = white.with_opacity(opacity));
+        }
+        let world = World::build(&scene).unwrap();
+        for spp in [1, 16, 37] {
+            let settings = Settings { spp, ..scene.settings.clone() };
+            let options = Options { features: true, ..Options::default() };
+            let mut render = ResumableRender::begin(&world, &settings, &options).unwrap();
+            render.run(&world, &options);
+            let mut missing = MissingFeatures::new(&settings);
+            assert!(missing.trace(&world, render.film(), &options));
+            let found = missing.layers(render.film(), &options);
+            let oracle = layers(&world, &settings, &options, &[Layer::Normal]).unwrap();
+            for (found, oracle) in found.pixels.iter().zip(&oracle.pixels) {
+                assert_eq!(found.id, oracle.id);
+                let columns = |features: &Features| {
+                    let Features { albedo, normal, coverage, .. } = *features;
+                    albedo.into_iter().chain(normal).chain([coverage]).collect::<Vec<f32>>()
+                };
+                let differences = columns(found).into_iter().zip(columns(oracle));
+                for (found, oracle) in differences {
+                    assert!((found - oracle).abs() < 1e-6, "{opacity} {spp}: {found} {oracle}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn features_of_another_render_are_forgotten() {
+    let (scene, world) = scene();
+    let settings = Settings { spp: 8, ..scene.settings };
+    let mut missing = MissingFeatures::new(&settings);
+    let layers = [true, false, true].map(|features| {
+        let options = Options { features, ..Options::default() };
+        let mut render = ResumableRender::begin(&world, &settings, &options).unwrap();
+        render.run(&world, &options);
+        assert!(missing.trace(&world, render.film(), &options));
+        missing.layers(render.film(), &options)
+    });
+    assert!(layers.windows(2).all(|pair| pair[0] == pair[1]));
 }

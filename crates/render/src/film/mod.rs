@@ -6,6 +6,7 @@
 
 mod chance;
 mod exact;
+mod features;
 mod probes;
 mod saved;
 mod sums;
@@ -13,6 +14,7 @@ mod tile;
 
 pub use chance::{ChanceLight, ChanceVariance, Term};
 pub use exact::ExactSums;
+pub(crate) use features::{FeatureSums, MeanFeatures, SampleSet, TileFeatures};
 pub use probes::{Density, Pilot, ProbePair, Probes, Reading, Role};
 pub(crate) use saved::TileHeader;
 pub use sums::Sums;

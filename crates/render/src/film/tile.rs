@@ -1,6 +1,6 @@
 //! Tiles: the sums of a square of pixels.
 
-use super::{Probes, Region, Sums};
+use super::{Probes, Region, Sums, TileFeatures};
 use crate::color::Rgb;
 use serde::{Deserialize, Serialize};
 
@@ -20,6 +20,8 @@ pub struct Tile {
     pub view: View,
     /// Probes for the estimate of the error; none unless it is measured.
     pub probes: Probes,
+    /// Features of the samples that the render has recorded, if it does.
+    pub(super) features: Option<TileFeatures>,
 }
 
 /// The surfaces that camera rays of a tile may hit.
@@ -41,6 +43,7 @@ impl Tile {
             samples: 0,
             view: View::Anything,
             probes: Probes::default(),
+            features: None,
         }
     }
 
@@ -74,6 +77,7 @@ impl Tile {
     /// Adds other samples of the same pixels. Returns false if the tiles are incompatible.
     pub(super) fn merge(&mut self, other: &Self) -> bool {
         self.samples += other.samples;
+        self.features = None;
         self.sums.merge(&other.sums) && self.probes.merge(&other.probes)
     }
 

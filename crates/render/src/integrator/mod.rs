@@ -14,6 +14,7 @@ pub mod device;
 mod direct_light;
 pub mod elisions;
 mod emission;
+pub mod features;
 pub mod generate;
 mod glass;
 mod interior;

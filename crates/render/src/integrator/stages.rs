@@ -2,6 +2,7 @@
 
 use super::Job;
 use super::clock::Stage;
+use super::features;
 use super::shadow_queue;
 use super::surface::compute_surfaces;
 use super::workspace::Workspace;
@@ -29,6 +30,7 @@ pub fn intersect(job: &Job, work: &mut Workspace) {
     work.probes.count_rays((0..work.rays.len()).map(|row| work.states.path(row) as u32));
     work.clock.end(Stage::Trace);
     compute_surfaces(job.world, work);
+    features::record(job.world, work);
     work.sort(job.world);
     work.clock.end(Stage::Surface);
 }

@@ -5,6 +5,7 @@ use super::caustics::Caustics;
 use super::clock::Clock;
 use super::counters::Counters;
 use super::elisions::Elisions;
+use super::features::FeatureBatch;
 use super::light_images::SeenLights;
 use super::material_queues::{ESCAPED, HitColumns, MaterialQueues};
 use super::material_table::MaterialTable;
@@ -76,6 +77,8 @@ pub struct Workspace {
     pub(super) caustics: Caustics,
     /// Lights that the camera sees.
     pub(super) seen_lights: SeenLights,
+    /// Features of the camera rays, if they are recorded.
+    pub features: FeatureBatch,
     /// The probes whose paths these are, if any.
     pub probes: ProbeBatch,
     /// Near misses of probes.
@@ -126,6 +129,7 @@ impl Workspace {
             shadow_queue: ShadowQueue::new(world.features.translucent),
             caustics: Caustics::new(world),
             seen_lights: SeenLights::default(),
+            features: FeatureBatch::default(),
             probes: ProbeBatch::default(),
             near_misses: NearMisses::default(),
             view: View::Anything,
@@ -228,6 +232,12 @@ impl Workspace {
             return 0.0;
         }
         self.coverage.get(row).copied().unwrap_or(1.0)
+    }
+
+    /// Returns the same of rows that hit something, unless all are 1.
+    #[inline]
+    pub(super) fn coverages(&self, rows: Range<usize>) -> Option<&[f32]> {
+        self.coverage.get(rows)
     }
 
     /// Returns the throughput of what is behind all bodies on the ray in a row: 0 if the ray ends before.

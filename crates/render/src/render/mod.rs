@@ -29,14 +29,14 @@ pub(crate) use header::RenderHeader;
 pub use incompatible::IncompatibleSettings;
 pub(crate) use incompatible::difference;
 pub use part::ImagePart;
-pub(crate) use pass::view;
+pub(crate) use pass::{PASS, view};
 pub use preview::preview;
+pub(crate) use resumable::strata;
 pub use resumable::{ResumableRender, not_followed};
 pub use status::Status;
 pub use tasks::Tasks;
 pub use watch::Totals;
 
-use self::pass::PASS;
 use crate::film::{Film, Region};
 use crate::image::Image;
 use crate::integrator::clock::Times;
@@ -64,6 +64,9 @@ pub struct Options<'a> {
     pub cancel: Option<&'a AtomicBool>,
     /// True if [`Render::statistics`] are computed, which needs probes and so takes time.
     pub statistics: bool,
+    /// True if the features of the first samples are recorded for a [`Denoiser`](crate::denoise::Denoiser), which traces
+    /// them otherwise.
+    pub features: bool,
     /// Estimates the error that is compared with the target, in place of that of the picture itself:
     /// that of the denoised picture, say. It is asked where the picture's own error is at most 2.5 times the target.
     /// `None` from it stands for an estimate that was cancelled.

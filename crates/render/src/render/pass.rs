@@ -13,7 +13,7 @@ use glam::DVec2;
 use std::ops::Range;
 
 /// Samples per pixel and pass; those of a tile are one batch of paths.
-pub(super) const PASS: u32 = 16;
+pub(crate) const PASS: u32 = 16;
 
 /// Returns the surfaces that camera rays of a region may hit.
 pub(crate) fn view(job: &Job, Region { x, y, width, height }: Region) -> View {
@@ -41,6 +41,8 @@ pub(super) fn uniform_radiance(world: &World, view: View) -> Option<Rgb> {
 pub(super) struct TileView {
     region: Region,
     view: View,
+    /// True if the tile keeps features.
+    features: bool,
 }
 
 /// Samples of tiles that are not yet added to their sums.
@@ -53,7 +55,7 @@ pub(super) enum TileSamples {
 
 impl TileView {
     pub(super) fn of(tile: &Tile) -> Self {
-        Self { region: tile.region, view: tile.view }
+        Self { region: tile.region, view: tile.view, features: tile.keeps_features() }
     }
 
     /// Returns whether samples of both tiles can be taken in one batch.
@@ -79,26 +81,35 @@ impl TileSamples {
             work.counters.skipped_samples += pixels * samples.len() as u64;
             return Self::Uniform(radiance);
         }
+        if tiles.clone().any(|tile| tile.features) && Tile::records(&samples) {
+            work.features.begin(samples.len());
+        }
         let streams =
             tiles.flat_map(|tile| tile.region.morton()).map(|(x, y)| (x, y, *job.sampler));
         trace_paths(job, (view, regions), (streams, samples), work);
         Self::Paths
     }
 
-    /// Adds the samples of a tile to its sums: `count` for each of its pixels. The tile's first path is
+    /// Adds the samples of a tile to its sums: these of each of its pixels. The tile's first path is
     /// number `first`. Returns the number of the next tile's.
     pub(super) fn add(
         &self,
         tile: &mut Tile,
-        count: u32,
+        samples: Range<u32>,
         first: usize,
         work: &mut Workspace,
     ) -> usize {
+        let count = samples.end - samples.start;
         let end = first + (tile.len() * count) as usize;
         match *self {
-            Self::Uniform(radiance) => tile.add_even(radiance, count),
+            Self::Uniform(radiance) => {
+                tile.add_even(radiance, count);
+                tile.add_features(samples, &[]);
+            }
             Self::Paths => {
                 work.counters.bad_samples += tile.add(&work.paths.radiance[first..end], count);
+                let pixels = first / count as usize..end / count as usize;
+                tile.add_features(samples, work.features.sums(pixels));
             }
         }
         work.clock.end(Stage::Film);
@@ -113,12 +124,11 @@ pub(super) fn tile_pass(
     samples: Range<u32>,
     work: &mut Workspace,
 ) {
-    let count = samples.end - samples.start;
     let views = tiles.iter().map(|tile| TileView::of(tile));
-    let taken = TileSamples::take(job, views, samples, work);
+    let taken = TileSamples::take(job, views, samples.clone(), work);
     let mut path = 0;
     for tile in tiles {
-        path = taken.add(tile, count, path, work);
+        path = taken.add(tile, samples.clone(), path, work);
     }
 }
 

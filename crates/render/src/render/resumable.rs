@@ -126,6 +126,9 @@ impl ResumableRender {
     /// `world` must be the one that the render began with. Region and statistics of the options are
     /// ignored: those of the beginning hold.
     pub fn run(&mut self, world: &World, options: &Options) -> End {
+        if options.features {
+            self.state.film.keep_features();
+        }
         let watch = Watch::new(options, &self.totals);
         let settings = self.settings.clone();
         self.end = with_job(world, &settings, options, |job| {
@@ -325,6 +328,6 @@ fn in_world_units(world: &World, settings: &Settings) -> Settings {
 
 /// Returns the number of strata of stratified samples, the size of well-distributed sets: only complete
 /// sets are better than independent samples.
-pub(super) fn strata(settings: &Settings) -> u32 {
+pub(crate) fn strata(settings: &Settings) -> u32 {
     if settings.has_target() { FIRST_SAMPLES.min(settings.spp) } else { settings.spp }
 }

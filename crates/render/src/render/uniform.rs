@@ -82,13 +82,13 @@ fn add(
     first: u32,
     work: &mut Workspace,
 ) {
-    let (count, end) = (samples.len() as u32, samples.end);
+    let end = samples.end;
     let tiles = batch.iter().map(|task| &tiles[task.tile]);
-    let taken = TileSamples::take(job, tiles.clone().map(|tile| tile.0), samples, work);
+    let taken = TileSamples::take(job, tiles.clone().map(|tile| tile.0), samples.clone(), work);
     let mut path = 0;
     for (_, tile) in tiles.clone() {
         if let Ok(mut tile) = tile.lock() {
-            path = taken.add(&mut tile, count, path, work);
+            path = taken.add(&mut tile, samples.clone(), path, work);
         }
     }
     // Probes are paths, too: they replace those of the tiles.
