@@ -46,7 +46,7 @@ fn bad_input_is_refused_with_help() {
         (
             "render --size 65535x65535",
             1,
-            &["65535 x 65535 pixels (1039.4 GB)", "--size or --region", "--denoise off"],
+            &["65535 x 65535 pixels (953.5 GB)", "--size or --region", "--denoise off"],
         ),
         (
             "render --size 65535x65535 --spp 4 --layers all -o a.exr",

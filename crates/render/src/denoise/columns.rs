@@ -1,6 +1,7 @@
 //! Columns of a tile's pixels and of those around it, for the regression.
 
 use super::regression::{REGRESSORS, SQUARE};
+use super::similarity::{Pixels, Similarities};
 use super::tile::Input;
 use crate::film::Region;
 use crate::lanes::{Lanes, Mask};
@@ -41,12 +42,16 @@ pub(super) struct Columns {
     /// Means over the squares of [`SQUARE`] pixels around each pixel, once [`Columns::average`] has computed them.
     pub(super) squares: Observations,
     has_squares: bool,
+    /// Similarities of pixels to their neighbors, if there is any noise.
+    pub(super) similarities: Similarities,
     /// The sphere at the pixel's center.
     pub(super) id: Vec<f32>,
     /// Mean albedo; 1 for the background, whose radiance is its color.
     pub(super) albedo: [Vec<f32>; 3],
     /// Variance of the irradiance.
     pub(super) variance: [Vec<f32>; 3],
+    /// Means over channels of irradiance and of its variance.
+    mean: [Vec<f32>; 2],
     /// Standard deviation over channels.
     deviation: Vec<f32>,
     /// Number of pixels: 1 inside of the picture.
@@ -82,7 +87,8 @@ impl Columns {
         let Observations { features, irradiance, weight } = &mut self.pixels;
         let columns = [&mut self.id, weight, &mut self.deviation, &mut self.inside];
         let columns = columns.into_iter().chain(features).chain(&mut self.albedo);
-        for column in columns.chain(irradiance).chain(&mut self.variance) {
+        let columns = columns.chain(irradiance).chain(&mut self.variance);
+        for column in columns.chain(&mut self.mean) {
             column.clear();
             column.resize(count, 0.0);
         }
@@ -97,6 +103,7 @@ impl Columns {
             }
         }
         self.weigh();
+        self.compare();
     }
 
     /// Sets pixel `at` to that of the picture.
@@ -108,15 +115,18 @@ impl Columns {
         }
         // Compared by its bits only.
         self.id[at] = f32::from_bits(features.id);
-        let mut sum = 0.0;
+        let (mut irradiance, mut sum) = (0.0, 0.0);
         for channel in 0..3 {
             let albedo = (features.albedo[channel] + 1.0 - features.coverage).max(MIN_ALBEDO);
             let variance = input.variance.pixels[pixel][channel] / (albedo * albedo);
             self.albedo[channel][at] = albedo;
-            self.pixels.irradiance[channel][at] = input.image.pixels[pixel][channel] / albedo;
+            let light = input.image.pixels[pixel][channel] / albedo;
+            self.pixels.irradiance[channel][at] = light;
             self.variance[channel][at] = variance;
+            irradiance += light;
             sum += variance;
         }
+        (self.mean[0][at], self.mean[1][at]) = (irradiance / 3.0, sum / 3.0);
         self.deviation[at] = (sum / 3.0).sqrt();
         self.inside[at] = 1.0;
     }
@@ -134,6 +144,15 @@ impl Columns {
             let usual = sum / count.max(1.0);
             let usual = OUTLIERS * usual * usual + f32::MIN_POSITIVE;
             *weight = inside * usual / (usual + deviation * deviation);
+        }
+    }
+
+    /// Computes the similarities of pixels, which nothing needs without noise.
+    fn compare(&mut self) {
+        let [mean, variance] = &self.mean;
+        if variance.iter().any(|&variance| variance > 0.0) {
+            let inside = &self.inside;
+            self.similarities.measure(Pixels { stride: self.stride, mean, variance, inside });
         }
     }
 
@@ -174,16 +193,26 @@ pub(super) fn box_sums(
     add_shifted(scratch, radius, stride, sums);
 }
 
+/// Number of sums that are computed at once: few enough that they stay in the first-level cache.
+const BLOCK: usize = 1024;
+
 /// Computes the sums of `2 radius + 1` values, each `step` apart. At the ends, where there are fewer, they are 0.
 fn add_shifted(values: &[f32], radius: usize, step: usize, sums: &mut Vec<f32>) {
     let span = 2 * radius * step;
-    sums.clear();
     sums.resize(values.len(), 0.0);
-    let Some(count) = values.len().checked_sub(span) else { return };
-    for shift in 0..=2 * radius {
-        let shifted = &values[shift * step..][..count];
-        for (sum, value) in sums[radius * step..][..count].iter_mut().zip(shifted) {
-            *sum += value;
+    let Some(count) = values.len().checked_sub(span) else {
+        sums.fill(0.0);
+        return;
+    };
+    let (before, rest) = sums.split_at_mut(radius * step);
+    let (inner, after) = rest.split_at_mut(count);
+    before.fill(0.0);
+    after.fill(0.0);
+    for (first, block) in (0..).step_by(BLOCK).zip(inner.chunks_mut(BLOCK)) {
+        block.copy_from_slice(&values[first..first + block.len()]);
+        for shift in 1..=2 * radius {
+            let shifted = &values[first + shift * step..];
+            block.iter_mut().zip(shifted).for_each(|(sum, value)| *sum += value);
         }
     }
 }
@@ -194,7 +223,7 @@ mod tests {
 
     #[test]
     fn box_sums_are_those_of_squares() {
-        let (stride, rows) = (9, 8);
+        let (stride, rows) = (90, 24);
         let values: Vec<f32> = (0..stride * rows).map(|i| (i * i % 17) as f32).collect();
         let (mut sums, mut scratch) = (Vec::new(), Vec::new());
         for radius in [0, 1, 3] {

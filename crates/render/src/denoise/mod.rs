@@ -9,6 +9,10 @@
 //! and multiplied by it after, so that colors are not blurred. Features come from the camera rays of the picture's own
 //! samples, and are recorded with them, so they have its silhouettes, including its lens blur and pixel filter.
 //!
+//! Edges that features do not have are those of caustics, highlights, and all that is seen in glass and mirrors. There,
+//! neighbors count by how similar their radiance is, beside their noise (Buades, Coll and Morel, "A Non-Local Algorithm for
+//! Image Denoising", CVPR 2005; Rousselle, Knaus and Zwicker, "Adaptive Rendering with Non-Local Means Filtering", TOG 2012).
+//!
 //! # The choice of the window
 //!
 //! Each pixel has a prediction for each of three windows, and stays as it is where none is better. The widest consists of
@@ -40,6 +44,7 @@ mod choose;
 mod columns;
 mod features;
 mod regression;
+mod similarity;
 mod target;
 mod tile;
 

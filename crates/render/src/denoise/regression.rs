@@ -7,11 +7,11 @@ use crate::lanes::Lanes;
 pub(super) const REGRESSORS: usize = 5;
 
 /// Radii of the windows of pixels.
-pub(super) const RADII: [usize; 2] = [1, 3];
+pub(super) const RADII: [usize; 2] = [1, 2];
 
 /// Edge of the squares of pixels of which the widest window consists, and its radius in squares.
 pub(super) const SQUARE: usize = 3;
-pub(super) const SQUARES_RADIUS: usize = RADII[1];
+pub(super) const SQUARES_RADIUS: usize = 3;
 
 /// Number of windows: those of pixels, and the one of squares.
 pub(super) const WINDOWS: usize = RADII.len() + 1;
@@ -31,14 +31,14 @@ pub(super) struct Prediction<L> {
     pub(super) leverage: L,
 }
 
-/// Number of pixels in the largest window.
-const PIXELS: usize = pixels(RADII[RADII.len() - 1]);
+/// Number of observations in the largest window.
+const LARGEST: usize = pixels(SQUARES_RADIUS);
 
 /// Offsets of a window's pixels, from the middle outward.
-static OFFSETS: [[isize; 2]; PIXELS] = {
-    let mut offsets = [[0; 2]; PIXELS];
+pub(super) static OFFSETS: [[isize; 2]; LARGEST] = {
+    let mut offsets = [[0; 2]; LARGEST];
     let (mut count, mut radius) = (0, 0);
-    while count < PIXELS {
+    while count < LARGEST {
         let mut at = 0;
         while at < (2 * radius + 1) * (2 * radius + 1) {
             let (x, y): (isize, isize) =
@@ -57,15 +57,16 @@ static OFFSETS: [[isize; 2]; PIXELS] = {
 /// Fits the windows of pixels around the pixels from `at` on, one in each lane.
 #[inline(always)]
 pub(super) fn predict<L: Lanes>(columns: &Columns, at: usize) -> [Prediction<L>; RADII.len()] {
-    fit::<{ RADII.len() }, 1, L>(columns, &columns.pixels, RADII, at)
+    let similarity = |index, neighbor| columns.similarities.load(index, at, neighbor);
+    fit::<{ RADII.len() }, 1, L>(columns, &columns.pixels, similarity, RADII, at)
 }
 
 /// Fits the window of squares, which must be known, around the pixels from `at` on, one in each lane.
 #[inline(always)]
 pub(super) fn predict_by_squares<L: Lanes>(columns: &Columns, at: usize) -> Prediction<L> {
-    let squares = &columns.squares;
+    let (squares, one) = (&columns.squares, L::splat(1.0));
     let [Prediction { irradiance, leverage }] =
-        fit::<1, { SQUARE as isize }, L>(columns, squares, [SQUARES_RADIUS], at);
+        fit::<1, { SQUARE as isize }, L>(columns, squares, |_, _| one, [SQUARES_RADIUS], at);
     let own = L::load(&columns.pixels.weight[at..]);
     let all = L::splat((SQUARE * SQUARE) as f32) * L::load(&squares.weight[at..]);
     let share = own / Lanes::max(all, L::splat(f32::MIN_POSITIVE));
@@ -73,7 +74,8 @@ pub(super) fn predict_by_squares<L: Lanes>(columns: &Columns, at: usize) -> Pred
 }
 
 /// Fits windows of ascending radii around the pixels from `at` on, one in each lane, to observations that are `STEP` pixels
-/// apart. Leverages are the derivatives by the observation in the middle.
+/// apart. Leverages are the derivatives by the observation in the middle. `similarity` returns that of a neighbor, by its
+/// index in [`OFFSETS`] and its place.
 ///
 /// The first pass over a window adds up its normal equations, which give the coefficient of each neighbor's irradiance;
 /// the second applies them. So the sums of a pass stay in registers.
@@ -81,6 +83,7 @@ pub(super) fn predict_by_squares<L: Lanes>(columns: &Columns, at: usize) -> Pred
 fn fit<const WINDOWS: usize, const STEP: isize, L: Lanes>(
     columns: &Columns,
     observations: &Observations,
+    similarity: impl Fn(usize, usize) -> L,
     radii: [usize; WINDOWS],
     at: usize,
 ) -> [Prediction<L>; WINDOWS] {
@@ -88,17 +91,19 @@ fn fit<const WINDOWS: usize, const STEP: isize, L: Lanes>(
     let middle = load(&columns.pixels.features, at);
     let id = L::load(&columns.id[at..]);
     let mut products = [[zero; REGRESSORS]; REGRESSORS];
-    let mut weights = [zero; PIXELS];
+    let mut weights = [zero; LARGEST];
     let mut solutions = [[zero; REGRESSORS]; WINDOWS];
     let mut first = 0;
     let neighbor = |[x, y]: [isize; 2]| columns.neighbor(at, [STEP * x, STEP * y]);
     for (radius, solution) in radii.iter().zip(&mut solutions) {
         let end = pixels(*radius);
-        for (weight, &offset) in weights[first..end].iter_mut().zip(&OFFSETS[first..end]) {
+        let neighbors = weights.iter_mut().zip(&OFFSETS).enumerate().take(end).skip(first);
+        for (index, (weight, &offset)) in neighbors {
             let neighbor = neighbor(offset);
             let differences = differences(observations, &middle, neighbor);
             let same = L::load(&columns.id[neighbor..]).has_bits_of(id);
-            *weight = closeness(&differences, same) * L::load(&observations.weight[neighbor..]);
+            let own = L::load(&observations.weight[neighbor..]);
+            *weight = closeness(&differences, same) * similarity(index, neighbor) * own;
             add_products(&mut products, &differences, *weight);
         }
         *solution = solve(&products);
@@ -106,7 +111,8 @@ fn fit<const WINDOWS: usize, const STEP: isize, L: Lanes>(
     }
     let mut sums = [[zero; 3]; WINDOWS];
     let inner = pixels(radii[0]);
-    let all = weights.iter().zip(&OFFSETS);
+    // The last `end`.
+    let all = weights[..first].iter().zip(&OFFSETS);
     let fitted = Fitted { observations, middle, solutions };
     for (&weight, &offset) in all.clone().take(inner) {
         fitted.apply::<0>(neighbor(offset), weight, &mut sums);

@@ -40,7 +40,7 @@ const KEPT: [f32; CHOICES] = [
     1.0 / (SQUARE * SQUARE * pixels(SQUARES_RADIUS)) as f32,
 ];
 
-/// Relative squared error of a pixel above which the window of squares is tried: the windows of pixels leave a 49th of it at
+/// Relative squared error of a pixel above which the window of squares is tried: the windows of pixels leave a 25th of it at
 /// least.
 const NOISY: f32 = 0.03;
 
