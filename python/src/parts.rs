@@ -37,19 +37,21 @@ pub(crate) fn render_part<'py>(
     let (request, pool) = table.request(py)?;
     let scene = scene.share();
     let work = move |shared: &Shared| -> Result<Option<Vec<u8>>, Fault> {
-        let mut session = Session::begin(&scene, request, false, Some(part))?;
-        if !session.run(shared, None) {
-            return Ok(None);
-        }
-        let Some(identity) = session.identity.take() else { return Ok(None) };
-        let (folder, arguments) = (OsString::new(), Vec::new());
-        let origin = Origin { scene: identity, folder, arguments, caption: Caption::default() };
-        let folder = tempfile::tempdir()?;
-        let path = folder.path().join(FILE);
-        checkpoint::write(&path, &origin, &session.render)?;
-        Ok(Some(fs::read(&path)?))
+        let mut session = Session::begin(&pool, &scene, request, false, Some(part))?;
+        pool.install(|| {
+            if !session.run(shared, None) {
+                return Ok(None);
+            }
+            let Some(identity) = session.identity.take() else { return Ok(None) };
+            let (folder, arguments) = (OsString::new(), Vec::new());
+            let origin = Origin { scene: identity, folder, arguments, caption: Caption::default() };
+            let folder = tempfile::tempdir()?;
+            let path = folder.path().join(FILE);
+            checkpoint::write(&path, &origin, &session.render)?;
+            Ok(Some(fs::read(&path)?))
+        })
     };
-    let (bytes, interrupt) = Watcher::new(stop, None).run(py, pool, work)?;
+    let (bytes, interrupt) = Watcher::new(stop, None).run_outside(py, work)?;
     if let Some(interrupt) = interrupt {
         return Err(interrupt);
     }
@@ -69,22 +71,24 @@ pub(crate) fn merge<'py>(
     let (request, pool) = table.request(py)?;
     let scene = scene.share();
     let work = move |shared: &Shared| {
-        let folder = tempfile::tempdir()?;
-        let path = folder.path().join(FILE);
-        let mut merge = Merge::default();
-        let text = |why: &dyn std::fmt::Display| Fault::Text(why.to_string());
-        for (number, bytes) in (1..).zip(&parts) {
-            fs::write(&path, bytes)?;
-            let (origin, render) = checkpoint::read(&path).map_err(|why| text(&why))?;
-            merge
-                .add(&format!("part {number}"), &origin.scene, render)
-                .map_err(|why| text(&why))?;
-        }
-        let (whole, _) = merge.finish().map_err(|why| text(&why))?;
-        let mut session = Session::begin(&scene, request, false, Part::new(1, 1))?;
+        let whole = pool.install(|| {
+            let folder = tempfile::tempdir()?;
+            let path = folder.path().join(FILE);
+            let mut merge = Merge::default();
+            let text = |why: &dyn std::fmt::Display| Fault::Text(why.to_string());
+            for (number, bytes) in (1..).zip(&parts) {
+                fs::write(&path, bytes)?;
+                let (origin, render) = checkpoint::read(&path).map_err(|why| text(&why))?;
+                merge
+                    .add(&format!("part {number}"), &origin.scene, render)
+                    .map_err(|why| text(&why))?;
+            }
+            Ok::<_, Fault>(merge.finish().map_err(|why| text(&why))?.0)
+        })?;
+        let mut session = Session::begin(&pool, &scene, request, false, Part::new(1, 1))?;
         session.render = whole;
-        session.show(&shared.cancel).map(Some)
+        pool.install(|| session.show(&shared.cancel)).map(Some)
     };
-    let (shown, interrupt) = Watcher::default().run(py, pool, work)?;
+    let (shown, interrupt) = Watcher::default().run_outside(py, work)?;
     show(py, shown, interrupt)
 }

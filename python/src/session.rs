@@ -125,8 +125,10 @@ pub(crate) struct Shown {
 }
 
 impl Session {
-    /// Builds the world of a scene; of one that is `taken` its spheres move there.
+    /// Builds the world of a scene with the threads of a pool; of one that is `taken` its spheres move there. It is not
+    /// called from the pool: see [`Watcher::run_outside`].
     pub(crate) fn begin(
+        pool: &ThreadPool,
         (scene, rows): &SharedScene,
         request: Request,
         taken: bool,
@@ -134,7 +136,8 @@ impl Session {
     ) -> Result<Self, Fault> {
         let mut scene = scene.lock().unwrap_or_else(PoisonError::into_inner);
         let kept = (scene.settings.clone(), scene.camera.clone());
-        let begun = Self::begin_with((&mut scene, rows.clone()), request, taken, part);
+        let locked = &mut *scene;
+        let begun = pool.install(|| Self::begin_with((locked, rows.clone()), request, taken, part));
         (scene.settings, scene.camera) = kept;
         begun
     }
@@ -425,17 +428,19 @@ pub(crate) fn render<'py>(
     let (request, pool) = table.request(py)?;
     let scene = scene.share();
     let work = move |shared: &Shared| {
-        let mut session = Session::begin(&scene, request, taken, None)?;
-        session.run(shared, None);
-        if session.render.samples().total == 0 {
-            return Ok(None);
-        }
-        let shown = session.show(&shared.cancel);
-        // Large pictures take a while to give their memory back; nobody waits for that.
-        rayon::spawn(move || drop(session));
-        shown.map(Some)
+        let mut session = Session::begin(&pool, &scene, request, taken, None)?;
+        pool.install(|| {
+            session.run(shared, None);
+            if session.render.samples().total == 0 {
+                return Ok(None);
+            }
+            let shown = session.show(&shared.cancel);
+            // Large pictures take a while to give their memory back; nobody waits for that.
+            rayon::spawn(move || drop(session));
+            shown.map(Some)
+        })
     };
-    let (shown, interrupt) = Watcher::new(stop, report).run(py, pool, work)?;
+    let (shown, interrupt) = Watcher::new(stop, report).run_outside(py, work)?;
     show(py, shown, interrupt)
 }
 
@@ -451,8 +456,9 @@ pub(crate) struct Refinement {
 pub(crate) fn refine(py: Python<'_>, scene: &Scene, table: RenderTable) -> PyResult<Refinement> {
     let (request, pool) = table.request(py)?;
     let scene = scene.share();
-    let work = move |_: &Shared| Session::begin(&scene, request, false, None);
-    let (session, _) = Watcher::default().run(py, Arc::clone(&pool), work)?;
+    let own = Arc::clone(&pool);
+    let work = move |_: &Shared| Session::begin(&own, &scene, request, false, None);
+    let (session, _) = Watcher::default().run_outside(py, work)?;
     let session = session.map_err(|fault| fault.raise(py))?;
     Ok(Refinement { session: Arc::new(Mutex::new(Some(session))), pool })
 }
@@ -469,19 +475,22 @@ impl Refinement {
         let slice = Duration::try_from_secs_f64(seconds)
             .map_err(|_| error(py, &format!("`seconds` is {seconds}, but must be 0 or more")))?;
         let state = Arc::clone(&self.session);
+        let pool = Arc::clone(&self.pool);
         let work = move |shared: &Shared| {
             let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
             let Some(session) = state.as_mut() else { return Ok(None) };
-            let done = session.run(shared, Some(slice));
-            let cancelled = shared.cancel.load(Ordering::SeqCst);
-            let shown = session.show(&shared.cancel)?;
-            if done || cancelled {
+            let (shown, ended) = pool.install(|| {
+                let done = session.run(shared, Some(slice));
+                let cancelled = shared.cancel.load(Ordering::SeqCst);
+                (session.show(&shared.cancel), done || cancelled)
+            });
+            let shown = shown?;
+            if ended {
                 *state = None;
             }
             Ok(Some(shown))
         };
-        let pool = Arc::clone(&self.pool);
-        let (shown, interrupt) = Watcher::new(stop, None).run(py, pool, work)?;
+        let (shown, interrupt) = Watcher::new(stop, None).run_outside(py, work)?;
         if let Ok(None) = shown {
             return interrupt.map_or(Ok(None), Err);
         }

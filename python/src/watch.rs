@@ -81,11 +81,21 @@ impl<'py> Watcher<'py> {
         pool: Arc<ThreadPool>,
         work: impl FnOnce(&Shared) -> T + Send + 'static,
     ) -> PyResult<(T, Option<PyErr>)> {
+        self.run_outside(py, move |shared| pool.install(|| work(shared)))
+    }
+
+    /// Runs work on a thread of its own, as [`Watcher::run`] otherwise. Locks that work in a pool needs are taken outside of
+    /// it: a thread of the pool that waits for others begins other work meanwhile, which may want the same lock.
+    pub(crate) fn run_outside<T: Send + 'static>(
+        &self,
+        py: Python<'py>,
+        work: impl FnOnce(&Shared) -> T + Send + 'static,
+    ) -> PyResult<(T, Option<PyErr>)> {
         let shared = Arc::new(Shared::default());
         let (sender, receiver) = mpsc::channel();
         let watched = Arc::clone(&shared);
         thread::spawn(move || {
-            let result = pool.install(|| work(&watched));
+            let result = work(&watched);
             // Nobody waits for work that was left behind.
             let _ = sender.send(result);
         });
