@@ -13,7 +13,7 @@ use crate::settings::Settings;
 use crate::world::World;
 use rayon::prelude::*;
 
-/// What a film has not recorded: features of samples of a render that was resumed, or that a device has taken; and the
+/// Features that a film has not recorded, of samples of a render that was resumed, or that a device has taken; and the
 /// bodies at the pixels' centers.
 #[derive(Debug)]
 pub(super) struct MissingFeatures {
@@ -22,7 +22,7 @@ pub(super) struct MissingFeatures {
     tiles: Vec<Missing>,
 }
 
-/// What a tile has not recorded.
+/// Features that a tile has not recorded.
 #[derive(Clone, Debug, Default)]
 struct Missing {
     features: TileFeatures,
