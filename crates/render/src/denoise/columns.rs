@@ -39,9 +39,8 @@ pub(super) struct Columns {
     pub(super) stride: usize,
     pub(super) rows: usize,
     pub(super) pixels: Observations,
-    /// Means over the squares of [`SQUARE`] pixels around each pixel, once [`Columns::average`] has computed them.
+    /// Means over the squares of [`SQUARE`] pixels around each pixel, if there is any noise.
     pub(super) squares: Observations,
-    has_squares: bool,
     /// Similarities of pixels to their neighbors, if there is any noise.
     pub(super) similarities: Similarities,
     /// The sphere at the pixel's center.
@@ -58,6 +57,8 @@ pub(super) struct Columns {
     inside: Vec<f32>,
     /// Sums of deviations and of pixels around each pixel.
     sums: [Vec<f32>; 2],
+    /// One column of the pixels' observations, times their weights.
+    products: Vec<f32>,
     scratch: Vec<f32>,
 }
 
@@ -82,7 +83,6 @@ impl Columns {
     /// Fills the columns with the pixels of a tile, at most `width` wide, and those around it.
     pub(super) fn fill(&mut self, input: &Input, tile: Region, width: usize) {
         (self.stride, self.rows) = (width + 2 * MARGIN[0], tile.height as usize + 2 * MARGIN[1]);
-        self.has_squares = false;
         let count = self.stride * self.rows;
         let Observations { features, irradiance, weight } = &mut self.pixels;
         let columns = [&mut self.id, weight, &mut self.deviation, &mut self.inside];
@@ -103,7 +103,10 @@ impl Columns {
             }
         }
         self.weigh();
-        self.compare();
+        if self.variance.iter().flatten().any(|&variance| variance > 0.0) {
+            self.compare();
+            self.average();
+        }
     }
 
     /// Sets pixel `at` to that of the picture.
@@ -147,23 +150,16 @@ impl Columns {
         }
     }
 
-    /// Computes the similarities of pixels, which nothing needs without noise.
+    /// Computes the similarities of pixels.
     fn compare(&mut self) {
         let [mean, variance] = &self.mean;
-        if variance.iter().any(|&variance| variance > 0.0) {
-            let inside = &self.inside;
-            self.similarities.measure(Pixels { stride: self.stride, mean, variance, inside });
-        }
+        let inside = &self.inside;
+        self.similarities.measure(Pixels { stride: self.stride, mean, variance, inside });
     }
 
-    /// Computes the means over squares, unless they are known. The pixels of a square count by their weights, and the square
-    /// has their mean weight.
-    pub(super) fn average(&mut self) {
-        if self.has_squares {
-            return;
-        }
-        self.has_squares = true;
-        let Self { pixels, squares, sums: [products, _], scratch, stride, .. } = self;
+    /// Computes the means over squares. The pixels of a square count by their weights, and the square has their mean weight.
+    fn average(&mut self) {
+        let Self { pixels, squares, products, scratch, stride, .. } = self;
         box_sums(&pixels.weight, *stride, SQUARE / 2, &mut squares.weight, scratch);
         let columns = pixels.features.iter().chain(&pixels.irradiance);
         let means = squares.features.iter_mut().chain(&mut squares.irradiance);

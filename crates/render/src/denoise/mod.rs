@@ -16,10 +16,9 @@
 //! # The choice of the window
 //!
 //! Each pixel has a prediction for each of three windows, and stays as it is where none is better. The widest consists of
-//! squares of pixels, whose means are the neighbors of its regression, and is tried where there is much noise. The squared
-//! error of a prediction that is linear in the radiance is estimated without a reference (Stein, "Estimation of the Mean of
-//! a Multivariate Normal Distribution", 1981; Li et al., "SURE-Based Optimization for Adaptive Sampling and
-//! Reconstruction", TOG 2012):
+//! squares of pixels, whose means are the neighbors of its regression. The squared error of a prediction that is linear in
+//! the radiance is estimated without a reference (Stein, "Estimation of the Mean of a Multivariate Normal Distribution",
+//! 1981; Li et al., "SURE-Based Optimization for Adaptive Sampling and Reconstruction", TOG 2012):
 //!
 //! ```text
 //! (prediction - mean)^2 + (2 leverage - 1) variance of the mean

@@ -84,17 +84,18 @@ fn noise_falls_and_edges_stay() {
     };
     let (before, after) = (error(&image), error(&denoised.image));
     assert!(after < before / 20.0, "{before} {after}");
-    // The surfaces differ in both features, so neither pixel beside the edge has any of the other's green.
+    // The surfaces differ in both features, so neither pixel beside the edge has any of the other's green. Squares across the
+    // edge have some of its blue.
     let column = (WIDTH / 2) as usize;
     for row in denoised.image.pixels.chunks(WIDTH as usize) {
         assert!((row[column - 1][1] - 0.1).abs() < 0.03 && (row[column][1] - 0.25).abs() < 0.06);
-        assert_eq!(row[column - 1][2], 0.0);
+        assert!((0.0..1e-4).contains(&row[column - 1][2]));
     }
     let stated = denoised.squared_error.iter().map(|&x| f64::from(x)).sum::<f64>();
     let stated = stated / f64::from(WIDTH * HEIGHT);
-    // The choice of the least estimate lowers the mean, to a fifth of the true error; that estimates of single pixels are not
-    // below 0 raises it again, to 2.3 times.
-    assert!(stated > after / 2.0 && stated < 3.0 * after, "{stated} {after}");
+    // Estimates of single pixels are uncertain by some hundredths of the noise, and not below 0, so their mean is above the
+    // true error.
+    assert!(after < stated && stated < after + before / 20.0, "{stated} {after} {before}");
 }
 
 #[test]
@@ -108,7 +109,7 @@ fn rare_bright_pixels_leave_no_stain() {
     assert!(denoised.pixels.iter().all(|pixel| pixel.iter().all(|&x| x < 1.0)));
 }
 
-/// The columns of a tile of the picture with noise of this size, squares included.
+/// The columns of a tile of the picture with noise of this size.
 fn columns_of(noise: f32) -> Columns {
     let (image, statistics, layers) = picture(noise);
     let input = tile::Input {
@@ -119,7 +120,6 @@ fn columns_of(noise: f32) -> Columns {
     };
     let mut columns = Columns::default();
     columns.fill(&input, Region { x: 0, y: 0, width: 120, height: 64 }, 120);
-    columns.average();
     columns
 }
 

@@ -6,7 +6,7 @@ use super::regression::{
 };
 use crate::film::Region;
 use crate::image::Image;
-use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask};
+use crate::lanes::{F32x16, Lanes, MAX_LANES};
 use crate::layers::Features;
 
 /// Size of a tile. Predictions are also needed for [`BORDER`] pixels around it, which together fill rows of lanes.
@@ -39,10 +39,6 @@ const KEPT: [f32; CHOICES] = [
     1.0 / pixels(RADII[1]) as f32,
     1.0 / (SQUARE * SQUARE * pixels(SQUARES_RADIUS)) as f32,
 ];
-
-/// Relative squared error of a pixel above which the window of squares is tried: the windows of pixels leave a 25th of it at
-/// least.
-const NOISY: f32 = 0.03;
 
 /// The picture that is denoised.
 pub(super) struct Input<'a> {
@@ -120,11 +116,12 @@ impl Workspace {
             [load(&columns.albedo, at), load(&columns.pixels.irradiance, at)];
         let variance: [L; 3] = load(&columns.variance, at);
         let predictions = if columns.has_noise::<L>(at) {
-            predict::<L>(columns, at)
+            let [near, wide] = predict::<L>(columns, at);
+            [near, wide, predict_by_squares(columns, at)]
         } else {
-            [Prediction { irradiance, leverage: L::splat(0.0) }; RADII.len()]
+            [Prediction { irradiance, leverage: L::splat(0.0) }; WINDOWS]
         };
-        let [near, wide] = predictions;
+        let [_, wide, _] = &predictions;
         let mut scale = L::splat(floor);
         let mut own = L::splat(0.0);
         for channel in 0..3 {
@@ -139,14 +136,8 @@ impl Workspace {
         // Rare bright paths would keep themselves: their variance is not that of well-distributed samples.
         let weight = L::load(&columns.pixels.weight[at..]) / scale;
         (weight * own).store(&mut self.errors[0][at..]);
-        let widest = if Lanes::lt(scale * L::splat(NOISY), own).bits() == 0 {
-            wide
-        } else {
-            self.columns.average();
-            predict_by_squares(&self.columns, at)
-        };
         for (window, Prediction { irradiance: predicted, leverage }) in
-            [near, wide, widest].iter().enumerate()
+            predictions.iter().enumerate()
         {
             let penalty = L::splat(2.0) * *leverage - L::splat(1.0);
             let mut error = L::splat(0.0);
