@@ -15,6 +15,9 @@ const SUMS: usize = size_of::<DevicePixel>() / size_of::<u32>();
 /// Words of a kernel's numbers.
 const PARAMS: usize = size_of::<Params>() / size_of::<u32>();
 
+/// Glass spheres that a path may be in, as `interior.wgsl` has them.
+const NESTING: usize = 8;
+
 /// Bounces that a device is asked for at once.
 pub(crate) const BOUNCES: usize = 8;
 
@@ -35,6 +38,8 @@ pub(crate) struct Columns {
     pub(crate) samples: wgpu::Buffer,
     pub(crate) samples_to_read: wgpu::Buffer,
     pub(crate) unsummed: wgpu::Buffer,
+    /// Glass spheres that contain the paths.
+    pub(crate) interiors: wgpu::Buffer,
     /// Queues of the paths of a bounce, and of those that go on.
     pub(crate) queues: [wgpu::Buffer; 2],
     pub(crate) head_to_read: wgpu::Buffer,
@@ -54,12 +59,21 @@ pub(crate) struct ShadowColumns {
     pub(crate) lights: wgpu::Buffer,
 }
 
+/// What the paths of a job need columns for.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Needs {
+    /// Shadow rays of each path beside its own rays.
+    pub(crate) shadows: usize,
+    /// True if several glass spheres may contain a path.
+    pub(crate) nested_glass: bool,
+}
+
 impl Columns {
-    /// Creates columns for so many pixels and paths, with so many shadow rays of each path beside its own rays.
+    /// Creates columns for so many pixels and paths.
     pub(crate) fn new(
         device: &Device,
         [pixels, paths]: [usize; 2],
-        shadows: usize,
+        Needs { shadows, nested_glass }: Needs,
     ) -> Result<Self, DeviceError> {
         let buffer = |what, words: usize, usage| {
             device.buffer(what, (size_of::<u32>() * words) as u64, usage)
@@ -83,7 +97,7 @@ impl Columns {
             rays: column("rays", 12)?,
             found: column("answers", 1)?,
             sequences: column("samples", 2)?,
-            states: column("states", 4)?,
+            states: column("states", 16)?,
             paths: buffer("paths", 4 * paths, Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST)?,
             pixel_sums: buffer("sums", SUMS * pixels, Usage::STORAGE | Usage::COPY_SRC)?,
             pixel_sums_to_read: buffer("sums to read", SUMS * pixels, read)?,
@@ -92,6 +106,11 @@ impl Columns {
             unsummed: buffer("number of pixels", 1, Usage::STORAGE | Usage::COPY_DST)?,
             queues: [queue("queue", paths)?, queue("queue", paths)?],
             head_to_read: buffer("count to read", HEAD, read)?,
+            interiors: buffer(
+                "glass around paths",
+                if nested_glass { NESTING * paths } else { 1 },
+                Usage::STORAGE,
+            )?,
             empty_head,
             bounces: buffer("bounces", PARAMS * BOUNCES, Usage::COPY_SRC | Usage::COPY_DST)?,
             shadows: ShadowColumns {

@@ -32,6 +32,7 @@ pub(crate) fn add_up(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::columns::Needs;
     use crate::tree::Params;
     use spherule_core::internals::random::Random;
     use spherule_render::film::Sums;
@@ -71,7 +72,7 @@ mod tests {
         };
         let mut random = Random::new(3);
         let rows: Vec<_> = (0..PIXELS).map(|pixel| samples(pixel, &mut random)).collect();
-        let columns = Columns::new(&device, [PIXELS, PIXELS * SAMPLES], 0).unwrap();
+        let columns = Columns::new(&device, [PIXELS, PIXELS * SAMPLES], Needs::default()).unwrap();
         device.write(&columns.paths, bytemuck::cast_slice(&rows));
         let (count, samples) = ((PIXELS * SAMPLES) as u32, SAMPLES as u32);
         let params = Params { count, samples, ..Params::default() };

@@ -177,6 +177,10 @@ fn test_sphere(ray: ptr<function, Ray>, search: ptr<function, Search>, row: u32)
             far = leave_high;
         }
     }
+    // Of a sphere around the origin, behind the end.
+    if near > (*search).t_far {
+        return;
+    }
     if certain && far < (*search).far {
         (*search).others = min((*search).others, (*search).near);
         (*search).sphere = row;

@@ -1,9 +1,10 @@
 //! The numbers of a job, as kernels get them.
 
+use crate::lights::{self, LightNumbers};
 use crate::materials;
 use crate::tree::FAR;
 use bytemuck::{Pod, Zeroable};
-use spherule_render::world::{DeviceIntegration, DeviceJob, DeviceRoulette};
+use spherule_render::world::{DeviceIntegration, DeviceJob, DeviceLightChoice, DeviceRoulette};
 
 /// The numbers of a job, as `job.wgsl` has them.
 #[repr(C)]
@@ -17,29 +18,21 @@ pub(crate) struct JobNumbers {
     ground_normal: [f64; 3],
     ground_height: f64,
     distance: f64,
+    reach: f64,
     seed: [u32; 2],
     flags: u32,
     depth: u32,
     ground_material: u32,
+    spheres: u32,
     middle: [f32; 3],
     slope: [f32; 3],
     toward: [f32; 3],
     background: [f32; 3],
     threshold: f32,
     survival: f32,
-    sun: SunNumbers,
-}
-
-/// The numbers of a sun.
-#[repr(C)]
-#[derive(Clone, Copy, Default, Pod, Zeroable)]
-struct SunNumbers {
-    tangent: [f32; 3],
-    bitangent: [f32; 3],
-    direction: [f32; 3],
-    disc: [f32; 2],
-    radiance: [f32; 3],
-    weight: [f32; 3],
+    lights: LightNumbers,
+    /// To a multiple of eight bytes.
+    unused: u32,
 }
 
 /// Bits of the flags, as in `job.wgsl`.
@@ -53,9 +46,11 @@ mod flag {
     pub(super) const ILLUMINATES: u32 = 64;
     pub(super) const ROULETTE_BY_THROUGHPUT: u32 = 128;
     pub(super) const ROULETTE_FIXED: u32 = 256;
-    pub(super) const SUN: u32 = 512;
-    pub(super) const SUN_DISC: u32 = 1024;
-    pub(super) const MIRRORED_LIGHT: u32 = 2048;
+    pub(super) const LIGHTS: u32 = 512;
+    pub(super) const MIRRORED_LIGHT: u32 = 1024;
+    pub(super) const LIGHT_TREE: u32 = 2048;
+    pub(super) const LIGHT_TABLE: u32 = 4096;
+    pub(super) const NESTED_GLASS: u32 = 8192;
 }
 
 /// What integrators have in different ways.
@@ -65,12 +60,11 @@ struct IntegrationNumbers {
     depth: u32,
     threshold: f32,
     survival: f32,
-    sun: SunNumbers,
 }
 
 impl JobNumbers {
-    /// Returns the numbers of a job.
-    pub(crate) fn of(job: &DeviceJob) -> Self {
+    /// Returns the numbers of a job with these lights.
+    pub(crate) fn of(job: &DeviceJob, lights: LightNumbers) -> Self {
         let (camera, sky, ground) = (&job.camera, &job.sky, &job.world.ground);
         let (slope, toward) = sky.gradient.unwrap_or_default();
         let own = IntegrationNumbers::of(job.integration);
@@ -82,6 +76,10 @@ impl JobNumbers {
             (sky.background.is_some(), flag::BACKGROUND),
             (sky.gradient.is_some(), flag::GRADIENT),
             (sky.illuminates, flag::ILLUMINATES),
+            (job.world.features.nested_glass, flag::NESTED_GLASS),
+            (job.lights.choice != DeviceLightChoice::None, flag::LIGHTS),
+            (matches!(job.lights.choice, DeviceLightChoice::Tree(_)), flag::LIGHT_TREE),
+            (matches!(job.lights.choice, DeviceLightChoice::Table(_)), flag::LIGHT_TABLE),
         ];
         let material = |id| materials::row(&job.world.materials, id);
         Self {
@@ -93,19 +91,22 @@ impl JobNumbers {
             ground_normal: ground.map(|ground| ground.normal.to_array()).unwrap_or_default(),
             ground_height: ground.map(|ground| ground.height).unwrap_or_default(),
             distance: own.distance,
+            reach: lights::reach(&job.lights),
             seed: [job.seed as u32, (job.seed >> 32) as u32],
             flags: flags
                 .iter()
                 .fold(own.flags, |flags, &(is, bit)| flags | if is { bit } else { 0 }),
             depth: own.depth,
             ground_material: ground.map(|ground| material(ground.material)).unwrap_or_default(),
+            spheres: job.world.spheres.len() as u32,
             middle: sky.middle.to_array(),
             slope: slope.to_array(),
             toward: toward.to_array(),
             background: sky.background.unwrap_or_default().to_array(),
             threshold: own.threshold,
             survival: own.survival,
-            sun: own.sun,
+            lights,
+            unused: 0,
         }
     }
 }
@@ -113,20 +114,13 @@ impl JobNumbers {
 impl IntegrationNumbers {
     fn of(integration: DeviceIntegration) -> Self {
         let far = f64::from(FAR);
-        let mut numbers = Self {
-            flags: 0,
-            distance: far,
-            depth: 0,
-            threshold: 1.0,
-            survival: 1.0,
-            sun: SunNumbers::default(),
-        };
-        let (depth, roulette, sun, mirrored_light) = match integration {
+        let mut numbers = Self { flags: 0, distance: far, depth: 0, threshold: 1.0, survival: 1.0 };
+        let (depth, roulette, mirrored_light) = match integration {
             DeviceIntegration::Occlusion { distance } => {
                 return Self { distance: far.min(distance), ..numbers };
             }
-            DeviceIntegration::Paths { depth, roulette, sun, mirrored_light } => {
-                (depth, roulette, sun, mirrored_light)
+            DeviceIntegration::Paths { depth, roulette, mirrored_light } => {
+                (depth, roulette, mirrored_light)
             }
         };
         numbers.depth = depth;
@@ -141,18 +135,8 @@ impl IntegrationNumbers {
                 numbers.survival = p;
             }
         }
-        if let Some(sun) = sun {
-            let disc = if sun.disc.is_some() { flag::SUN_DISC } else { 0 };
-            let mirrored = if mirrored_light { flag::MIRRORED_LIGHT } else { 0 };
-            numbers.flags |= flag::SUN | disc | mirrored;
-            numbers.sun = SunNumbers {
-                tangent: sun.basis.tangent.to_array(),
-                bitangent: sun.basis.bitangent.to_array(),
-                direction: sun.basis.normal.to_array(),
-                disc: sun.disc.unwrap_or_default(),
-                radiance: sun.radiance.to_array(),
-                weight: sun.weight.to_array(),
-            };
+        if mirrored_light {
+            numbers.flags |= flag::MIRRORED_LIGHT;
         }
         numbers
     }

@@ -21,6 +21,7 @@ mod device;
 mod error;
 mod film;
 mod job;
+mod lights;
 mod materials;
 mod nodes;
 mod paths;

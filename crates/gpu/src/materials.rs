@@ -14,13 +14,27 @@ struct Entry {
     colors: [Rgb; ROWS - 1],
 }
 
-/// Returns the color of each sphere, and the row of its material.
+/// Returns the color of each sphere, and the row of its material; and, after these, the numbers of the spheres in the scene
+/// where glass is nested.
 pub(crate) fn appearance(world: &World) -> Vec<[u32; 4]> {
     let of = |sphere: u32| {
         let [x, y, z] = world.color(sphere).to_array().map(f32::to_bits);
         [x, y, z, row(&world.materials, world.material(sphere))]
     };
-    (0..world.spheres.len() as u32).map(of).collect()
+    let mut rows: Vec<[u32; 4]> = (0..world.spheres.len() as u32).map(of).collect();
+    if world.features.nested_glass {
+        rows.extend(words(&world.spheres.id[..world.spheres.len()]));
+    }
+    rows
+}
+
+/// Returns words in rows of four.
+pub(crate) fn words(words: &[u32]) -> impl Iterator<Item = [u32; 4]> {
+    words.chunks(4).map(|words| {
+        let mut row = [0; 4];
+        row[..words.len()].copy_from_slice(words);
+        row
+    })
 }
 
 /// Returns the place of a material among those of all kinds.

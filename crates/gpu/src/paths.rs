@@ -1,17 +1,18 @@
 //! Paths that a device follows from the camera to their ends, with the processor's numbers.
 
-use crate::columns::{BOUNCES, Columns};
+use crate::columns::{BOUNCES, Columns, Needs};
 use crate::device::{Device, Size, Work};
 use crate::error::DeviceError;
 use crate::film;
 use crate::job::JobNumbers;
+use crate::lights;
 use crate::materials;
 use crate::stages::Kernel;
 use crate::tree::{Answered, DeviceTree, Params};
 use bytemuck::Pod;
 use spherule_render::World;
 use spherule_render::world::{
-    DeviceIntegration, DeviceIntegrator, DeviceJob, DevicePaths, DevicePixels,
+    DeviceIntegration, DeviceIntegrator, DeviceJob, DeviceLightChoice, DevicePaths, DevicePixels,
 };
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -32,7 +33,9 @@ struct JobPaths {
     appearance: wgpu::Buffer,
     materials: wgpu::Buffer,
     integration: DeviceIntegration,
+    needs: Needs,
     numbers: wgpu::Buffer,
+    lights: wgpu::Buffer,
     sobol: wgpu::Buffer,
     offsets: wgpu::Buffer,
     /// Columns of paths, of the size of the last batch or larger.
@@ -91,7 +94,7 @@ impl Integrator {
         let paths = JobPaths::new(self, job)?;
         let device = paths.device();
         let count = pixels.len() * samples.len();
-        let columns = Columns::new(device, [pixels.len(), count], paths.shadows())?;
+        let columns = Columns::new(device, [pixels.len(), count], paths.needs)?;
         paths.begin(&columns, pixels, samples);
         let stage = |stage| {
             let mut work = device.work();
@@ -138,12 +141,18 @@ impl JobPaths {
     fn new(integrator: &Integrator, job: &DeviceJob) -> Result<Self, DeviceError> {
         let device = integrator.tree.device();
         let filled = |what, bytes: &[u8]| device.filled(what, bytes);
+        let (lights, light_numbers) = lights::rows(&job.lights);
         Ok(Self {
             tree: Arc::clone(&integrator.tree),
             appearance: integrator.appearance.clone(),
             materials: integrator.materials.clone(),
             integration: job.integration,
-            numbers: filled("job", bytemuck::bytes_of(&JobNumbers::of(job)))?,
+            needs: Needs {
+                shadows: shadow_rays(job),
+                nested_glass: job.world.features.nested_glass,
+            },
+            numbers: filled("job", bytemuck::bytes_of(&JobNumbers::of(job, light_numbers)))?,
+            lights: filled("lights", bytemuck::cast_slice(&lights))?,
             sobol: filled("direction vectors", bytemuck::cast_slice(&job.sobol))?,
             offsets: filled("filter", bytemuck::cast_slice(job.offsets.unwrap_or_default()))?,
             columns: Mutex::default(),
@@ -171,7 +180,7 @@ impl JobPaths {
         let mut kept = self.columns.lock().unwrap_or_else(PoisonError::into_inner);
         let columns = match kept.take().filter(|columns| columns.fit(pixels.len(), count)) {
             Some(columns) => columns,
-            None => Columns::new(device, [pixels.len(), count], self.shadows())?,
+            None => Columns::new(device, [pixels.len(), count], self.needs)?,
         };
         let params = self.begin(&columns, pixels, samples);
         self.follow_all(&columns, params)?;
@@ -191,7 +200,7 @@ impl JobPaths {
         let params = Params {
             first_sample: samples.start,
             samples: samples.len() as u32,
-            shadows: self.shadows().max(1) as u32,
+            shadows: self.needs.shadows.max(1) as u32,
             ..self.tree.params(count)
         };
         self.write_bounces(columns, &params);
@@ -205,16 +214,6 @@ impl JobPaths {
         self.device().write(&columns.bounces, bytemuck::cast_slice(&rows));
     }
 
-    /// Returns the shadow rays of a path at each bounce; 0 if there are none beside the path's own rays.
-    fn shadows(&self) -> usize {
-        match self.integration {
-            DeviceIntegration::Paths { sun: Some(_), mirrored_light, .. } => {
-                1 + usize::from(mirrored_light)
-            }
-            DeviceIntegration::Paths { .. } | DeviceIntegration::Occlusion { .. } => 0,
-        }
-    }
-
     /// Adds a stage of the paths in a queue, by its place, to the work.
     fn stage(
         &self,
@@ -224,11 +223,11 @@ impl JobPaths {
         queue: usize,
     ) -> Result<(), DeviceError> {
         let Columns { params, pixels, rays, found, sequences, states, paths, queues, .. } = columns;
-        let Self { numbers, sobol, offsets, appearance, materials, .. } = self;
+        let Self { numbers, sobol, offsets, appearance, materials, lights, .. } = self;
         let shadows = &columns.shadows;
         // Shadow rays are the paths' own where no others follow.
         let [shadow_rays, shadow_found] =
-            if self.shadows() > 0 { [&shadows.rays, &shadows.found] } else { [rays, found] };
+            if self.needs.shadows > 0 { [&shadows.rays, &shadows.found] } else { [rays, found] };
         let [queue, next] = [&queues[queue], &queues[1 - queue]];
         let mut size = Size::Queue(queue);
         let mut buffers = vec![params];
@@ -254,7 +253,7 @@ impl JobPaths {
                     Kernel::Occlusion
                 } else {
                     buffers.extend([states, paths, &shadows.rays, &shadows.lights]);
-                    buffers.extend([queue, next, &shadows.queue]);
+                    buffers.extend([queue, next, &shadows.queue, lights, &columns.interiors]);
                     Kernel::Path
                 }
             }
@@ -278,7 +277,7 @@ impl JobPaths {
         let device = self.device();
         let (depth, has_shadows) = match self.integration {
             DeviceIntegration::Occlusion { .. } => (0, true),
-            DeviceIntegration::Paths { depth, .. } => (depth, self.shadows() > 0),
+            DeviceIntegration::Paths { depth, .. } => (depth, self.needs.shadows > 0),
         };
         let mut queue = 0;
         loop {
@@ -315,6 +314,18 @@ impl JobPaths {
             }
             self.write_bounces(columns, &params);
         }
+    }
+}
+
+/// Returns the shadow rays of a path at each bounce: a light sample, and suns and an emissive sphere that are mirrored.
+fn shadow_rays(job: &DeviceJob) -> usize {
+    match job.integration {
+        DeviceIntegration::Paths { .. } if job.lights.choice == DeviceLightChoice::None => 0,
+        DeviceIntegration::Paths { mirrored_light: true, .. } => {
+            1 + job.lights.suns.len() + job.lights.emitters.len().min(1)
+        }
+        DeviceIntegration::Paths { .. } => 1,
+        DeviceIntegration::Occlusion { .. } => 0,
     }
 }
 

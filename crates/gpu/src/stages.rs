@@ -98,12 +98,22 @@ impl Kernel {
             include_str!("stages/plastic.wgsl"),
             include_str!("stages/reflective.wgsl"),
         ];
-        const PATH: [&str; 8] = [
+        const LIGHTS: [&str; 6] = [
+            include_str!("stages/lights.wgsl"),
+            include_str!("stages/light_tree.wgsl"),
+            include_str!("stages/sphere_light.wgsl"),
+            include_str!("stages/point_light.wgsl"),
+            include_str!("stages/sun.wgsl"),
+            include_str!("stages/direct_light.wgsl"),
+        ];
+        const PATH: [&str; 10] = [
             PATH_STATE,
             QUEUE,
             RAYS,
             SHADOW_RAYS,
-            include_str!("stages/direct_light.wgsl"),
+            include_str!("stages/mirrored_light.wgsl"),
+            include_str!("stages/interior.wgsl"),
+            include_str!("stages/glass.wgsl"),
             include_str!("stages/emission.wgsl"),
             include_str!("stages/roulette.wgsl"),
             include_str!("stages/path.wgsl"),
@@ -135,7 +145,7 @@ impl Kernel {
                 let arithmetic = include_str!("stages/arithmetic.wgsl");
                 ("film", vec![PARAMS, arithmetic, include_str!("stages/film.wgsl")])
             }
-            Self::Path => ("path", of(&[&JOB, &SURFACE, &BSDFS, &PATH])),
+            Self::Path => ("path", of(&[&JOB, &SURFACE, &BSDFS, &LIGHTS, &PATH])),
         }
     }
 }

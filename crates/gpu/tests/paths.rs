@@ -15,8 +15,8 @@ use spherule_render::render::{
     End, ImagePart, Options, Progress, Render, ResumableRender, not_followed, render,
 };
 use spherule_render::scene::{
-    Background, ConductorFresnel, EnvironmentMap, Integrator, Lens, Light, Material, Preset, Rgb,
-    Roulette, Scene,
+    Background, ConductorFresnel, EnvironmentMap, Integrator, Lens, Light, LightChoice, Material,
+    NamedMaterial, Preset, Rgb, Roulette, Scene,
 };
 use spherule_render::settings::{Filter, SamplerKind};
 use std::path::{Path, PathBuf};
@@ -227,6 +227,186 @@ fn mixed_materials_in_all_scenes_are_the_processors() {
     }
 }
 
+/// Makes every third sphere emit, some brightly, and others diffuse or of these materials.
+fn add_emitters(scene: &mut Scene, others: &[Material]) {
+    of_materials(scene, others);
+    for (row, named) in scene.materials.iter_mut().enumerate().filter(|(row, _)| row % 3 == 1) {
+        let radiance = Rgb::new(4.0, 3.0, 0.5 + row as f32 % 5.0);
+        named.material = Material::Emitter { radiance, albedo: Rgb::new(0.2, 0.5, 0.3) };
+    }
+}
+
+/// Adds points with falloff and without, and suns with extent and without.
+fn add_lights(scene: &mut Scene) {
+    let intensity = Rgb::new(3.0, 5.0, 8.0);
+    let sun = |direction: [f64; 3], angular_radius| Light::Sun {
+        direction: DVec3::from(direction).normalize(),
+        irradiance: Rgb::new(0.7, 0.4, 0.3),
+        angular_radius,
+    };
+    scene.lights = vec![
+        sun([0.4, 0.7, 0.5], 4.0),
+        Light::Point { position: DVec3::new(1.0, 3.0, 2.0), intensity, falloff: true },
+        Light::Point {
+            position: DVec3::new(-4.0, 2.0, 1.0),
+            intensity: 0.1 * intensity,
+            falloff: false,
+        },
+        sun([-0.4, 0.9, 0.1], 0.0),
+        sun([0.5, 0.6, 0.5], 30.0),
+    ];
+}
+
+/// Returns diffuse and rough materials, which no light is mirrored by.
+fn rough_materials() -> Vec<Material> {
+    let all = opaque_materials()
+        .into_iter()
+        .filter(|(name, _)| ["lambertian", "schlick", "rough gold"].contains(name));
+    all.map(|(_, material)| material).collect()
+}
+
+#[test]
+fn lights_of_every_kind_are_the_processors() {
+    let Some(device) = device() else { return };
+    let all: Vec<Material> = opaque_materials().into_iter().map(|(_, material)| material).collect();
+    for choice in [LightChoice::Tree, LightChoice::Power, LightChoice::Uniform] {
+        for (name, materials) in [("rough", &rough_materials()), ("all", &all)] {
+            for (lights, emitters) in [(true, false), (false, true), (true, true)] {
+                let mut scene = named("paper-field-20.toml");
+                diffuse(&mut scene);
+                of_materials(&mut scene, materials);
+                if emitters {
+                    add_emitters(&mut scene, materials);
+                }
+                if lights {
+                    add_lights(&mut scene);
+                }
+                scene.settings.light_choice = choice;
+                scene.settings.caustics = false;
+                let case = format!("{name}, {choice:?}, lights {lights}, emitters {emitters}");
+                let found = compare(&case, &scene, &device);
+                assert!(found.unknown_paths * 20 < found.paths, "{case} {found:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn one_emitter_and_hundreds_are_the_processors() {
+    let Some(device) = device() else { return };
+    for (name, every) in
+        [("paper-two-spheres.toml", 2), ("paper-grid-500.toml", 3), ("sphereflake.toml", 2)]
+    {
+        let mut scene = named(name);
+        diffuse(&mut scene);
+        let materials = rough_materials();
+        of_materials(&mut scene, &materials);
+        let glowing = scene.materials.len() as u32;
+        let radiance = Rgb::new(3.0, 2.0, 1.0);
+        let material = Material::Emitter { radiance, albedo: Rgb::splat(0.4) };
+        scene.materials.push(NamedMaterial { name: "glowing".to_owned(), material });
+        for material in scene.spheres.material.iter_mut().step_by(every) {
+            *material = glowing;
+        }
+        scene.settings.caustics = false;
+        let found = compare(name, &scene, &device);
+        assert!(found.unknown_paths * 20 < found.paths, "{name} {found:?}");
+    }
+}
+
+#[test]
+fn emitters_that_smooth_surfaces_mirror_are_the_processors() {
+    let Some(device) = device() else { return };
+    let mirror = Material::Reflective { color: Rgb::new(0.9, 0.8, 0.7), diffuse: 0.5, mirror: 0.4 };
+    for suns in [false, true] {
+        let mut scene = named("paper-field-20.toml");
+        diffuse(&mut scene);
+        add_emitters(&mut scene, std::slice::from_ref(&mirror));
+        if suns {
+            add_lights(&mut scene);
+        }
+        let found = compare(&format!("mirrored emitters, suns {suns}"), &scene, &device);
+        assert!(found.unknown_paths * 20 < found.paths, "{found:?}");
+    }
+}
+
+#[test]
+fn glass_that_stands_alone_is_the_processors() {
+    let Some(device) = device() else { return };
+    for (name, color) in [("clear", Rgb::ONE), ("tinted", Rgb::new(0.9, 0.7, 0.95))] {
+        for background in [false, true] {
+            for lights in [false, true] {
+                let mut scene = named("paper-field-20.toml");
+                diffuse(&mut scene);
+                let glass = Material::Dielectric { ior: 1.5, color };
+                let [rough, ..] = &rough_materials()[..] else { panic!("there are some") };
+                let spheres = scene.materials.iter_mut().filter(|row| row.name != "floor");
+                for (named, material) in spheres.zip([rough.clone(), glass]) {
+                    named.material = material;
+                }
+                if lights {
+                    add_lights(&mut scene);
+                }
+                if background {
+                    scene.look.background = Background::Color(Rgb::new(0.1, 0.5, 0.3));
+                }
+                scene.settings.caustics = false;
+                let case = format!("{name} glass, background {background}, lights {lights}");
+                let found = compare(&case, &scene, &device);
+                assert!(found.unknown_paths * 20 < found.paths, "{case} {found:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn nested_and_overlapping_glass_is_the_processors() {
+    let Some(device) = device() else { return };
+    for tint in [Rgb::ONE, Rgb::new(0.9, 0.95, 0.7)] {
+        let mut scene = named("paper-field-20.toml");
+        diffuse(&mut scene);
+        let dense = Material::Dielectric { ior: 1.9, color: tint };
+        let glass = Material::Dielectric { ior: 1.3, color: tint };
+        for named in scene.materials.iter_mut().filter(|row| row.name != "floor") {
+            named.material = glass.clone();
+        }
+        let row = scene.materials.len() as u32;
+        scene.materials.push(NamedMaterial { name: "dense".to_owned(), material: dense });
+        // In each sphere one, one that overlaps it, and one more of its size.
+        for sphere in 0..scene.spheres.len() {
+            let (center, radius) = (scene.spheres.center(sphere), scene.spheres.radius[sphere]);
+            scene.spheres.push(center + 0.1 * radius, 0.6 * radius, row, Rgb::ONE);
+            scene.spheres.push(center + DVec3::Y * radius, 0.7 * radius, row, Rgb::ONE);
+            scene.spheres.push(center + DVec3::X * radius, radius, row, Rgb::ONE);
+        }
+        // Devices leave paths of more than thirty bounces to the processor.
+        scene.settings.depth = Some(30);
+        let found = compare(&format!("nested glass {tint}"), &scene, &device);
+        assert!(found.unknown_paths * 20 < found.paths, "{found:?}");
+    }
+}
+
+#[test]
+fn scenes_that_devices_follow_are_the_processors() {
+    let Some(device) = device() else { return };
+    let mut followed = Vec::new();
+    for path in files() {
+        let mut scene = load(&path);
+        scene.settings.caustics = false;
+        let world = World::build(&scene).unwrap();
+        let why = not_followed(&world, &scene.settings);
+        println!("{}: {why:?}", path.display());
+        if why.is_none() {
+            compare(&path.display().to_string(), &scene, &device);
+            followed.push(path.file_stem().unwrap().display().to_string());
+        }
+    }
+    println!("{followed:?}");
+    for name in ["veach", "weekend", "glass-nested", "paper-grid-500"] {
+        assert!(followed.iter().any(|own| own == name), "{name} is not among {followed:?}");
+    }
+}
+
 #[test]
 fn looks_of_particles_are_the_processors() {
     let Some(device) = device() else { return };
@@ -367,10 +547,17 @@ fn what_devices_do_not_do_is_told() {
         not_followed(&world, &scene.settings)
     };
     assert_eq!(told(&|_| ()), None);
-    let glass = |scene: &mut Scene| {
-        scene.materials[0].material = Material::Dielectric { ior: 1.5, color: Rgb::ONE };
+    let glass = Material::Dielectric { ior: 1.5, color: Rgb::ONE };
+    let mirroring = |scene: &mut Scene| {
+        scene.materials[0].material = glass.clone();
+        add_sun(scene, 40.0);
     };
-    assert_eq!(told(&glass), Some("the scene has glass"));
+    assert_eq!(told(&mirroring), Some("glass mirrors lights"));
+    let around = |scene: &mut Scene| {
+        scene.materials[0].material = glass.clone();
+        scene.spheres.push(DVec3::ZERO, 1e3, 0, Rgb::ONE);
+    };
+    assert_eq!(told(&around), Some("glass is around the camera"));
     let caustics = |scene: &mut Scene| {
         let (_, plastic) = opaque_materials().swap_remove(5);
         of_materials(scene, &[plastic]);
@@ -383,8 +570,12 @@ fn what_devices_do_not_do_is_told() {
     assert_eq!(told(&whitted), Some("devices have no whitted integrator"));
     let independent = |scene: &mut Scene| scene.settings.sampler = SamplerKind::Independent;
     assert_eq!(told(&independent), Some("devices have Sobol points only"));
-    let scene = named("veach.toml");
-    let world = World::build(&scene).unwrap();
-    let why = not_followed(&world, &scene.settings);
-    assert_eq!(why, Some("the scene has lights other than a sun and an even sky"));
+    let suns = |scene: &mut Scene| {
+        let light = {
+            add_sun(scene, 5.0);
+            scene.lights[0].clone()
+        };
+        scene.lights = vec![light; 5];
+    };
+    assert_eq!(told(&suns), Some("many suns are mirrored"));
 }

@@ -23,7 +23,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if path == NO_ROW {
         return;
     }
-    let surface = surface_of(path, found[path]);
+    let surface = surface_of(path, found[path], Entry(false, vec3<f64>(0.0)));
     if !surface.known {
         paths[path].w |= 1u;
         end_ray(path);
@@ -38,7 +38,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let draw = draw4(sequences[path], directions(0u));
     let direction = normalized(to_world(basis_about(surface.facing), cosine_hemisphere(draw.xy)));
     let lit = max(max(light.x, light.y), light.z) > 0.0;
-    let hidden = surface.inside && surface.hit != GROUND && chord_length(surface, direction) < job.distance;
+    let hidden = surface.inside && surface.hit != GROUND && chord_length(surface.normal, surface.radius, direction) < job.distance;
     if !lit || hidden {
         end_ray(path);
         return;

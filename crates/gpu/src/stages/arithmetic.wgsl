@@ -24,6 +24,10 @@ fn quotient(x: f32, y: f32) -> f32 {
     return keep(f32(f64(x) / f64(y)));
 }
 
+fn quotients(v: vec3<f32>, divisor: f32) -> vec3<f32> {
+    return vec3<f32>(quotient(v.x, divisor), quotient(v.y, divisor), quotient(v.z, divisor));
+}
+
 // A square root of single precision; as for quotients.
 fn root(x: f32) -> f32 {
     return keep(f32(sqrt(f64(x))));

@@ -1,7 +1,21 @@
-// The light of the environment and of the sun that paths reach: `integrator/emission.rs`.
+// The light of the environment, of suns and of emissive spheres that paths reach: `integrator/emission.rs`.
+
+// The weight of a sun that a path has found, from its last point.
+fn sun_weight(path: u32, sun: u32, previous: u32) -> f32 {
+    if mirrored_light_sampled(previous) {
+        return 0.0;
+    }
+    if !light_sampled(previous) {
+        return 1.0;
+    }
+    let light = job.emitters + job.points + sun;
+    let probability = light_probability(ray_origin(path), states[path].normal, light);
+    return power_heuristic(previous_density(previous), keep(probability * sun_pdf(sun)));
+}
 
 // The light of a ray that leaves the scene.
-fn escaped_light(direction: vec3<f32>, previous: u32) -> vec3<f32> {
+fn escaped_light(path: u32, previous: u32) -> vec3<f32> {
+    let direction = ray_direction(path);
     if params.bounce == 0u && has(BACKGROUND) {
         return vector32(job.background);
     }
@@ -9,12 +23,46 @@ fn escaped_light(direction: vec3<f32>, previous: u32) -> vec3<f32> {
     if has(ILLUMINATES) || specular_only(previous) {
         light = environment_radiance(direction);
     }
-    if after_diffuse(previous) || mirrored_light_sampled(previous) || !sun_is_toward(direction) {
+    let own = ray_own(path);
+    // Glass shows the background, too.
+    if has(BACKGROUND) && specular_only(previous) && own != MISS && material_kind(material_at(own)) == DIELECTRIC {
+        light = vector32(job.background);
+    }
+    if after_diffuse(previous) {
         return light;
     }
-    var weight = 1.0;
-    if light_sampled(previous) {
-        weight = power_heuristic(previous_density(previous), job.sun_pdf);
+    for (var sun = 0u; sun < job.suns; sun++) {
+        if sun_is_toward(sun, direction) {
+            light = keep3(light + scaled(sun_radiance(sun), sun_weight(path, sun, previous)));
+        }
     }
-    return keep3(light + scaled(vector32(job.sun_radiance), weight));
+    return light;
+}
+
+// The weight of an emissive sphere that a path has hit, from its last point.
+fn emitter_weight(path: u32, sphere: u32, previous: u32) -> f32 {
+    let point = ray_origin(path);
+    let number = emitter_number(sphere);
+    if !light_sampled(previous) {
+        let left_out = mirrored_light_sampled(previous) && number != MISS && is_outside(point, sphere);
+        return select(1.0, 0.0, left_out);
+    }
+    if number == MISS || sphere == ray_own(path) {
+        return 1.0;
+    }
+    let seen = view_sphere(point, sphere);
+    if !seen.outside {
+        return 1.0;
+    }
+    if after_diffuse(previous) && !seen.close {
+        return 0.0;
+    }
+    let probability = light_probability(point, states[path].normal, number);
+    return power_heuristic(previous_density(previous), keep(probability * seen.pdf));
+}
+
+// The light that a surface emits along the path that has hit it.
+fn emitted_light(path: u32, hit: u32, state: PathState) -> vec3<f32> {
+    let radiance = material_color(material_at(hit), 3u);
+    return scaled(keep3(state.throughput * radiance), emitter_weight(path, hit, state.previous));
 }

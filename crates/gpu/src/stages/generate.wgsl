@@ -54,12 +54,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let origin = vec3<f32>(ray.origin);
     let direction = vec3<f32>(ray.direction);
     let ground = cross_ground(origin, direction, MISS);
-    var bounds = vec2<f32>(FAR);
-    if ground.crossed {
-        bounds = bounds_around(ground.t);
-    }
-    write_ray(path, origin, direction, MISS, bounds);
-    states[path] = PathState(vec3<f32>(1.0), CAMERA);
+    write_ray(path, origin, direction, MISS, bounds_before(ground, INFINITELY_FAR));
+    states[path].throughput = vec3<f32>(1.0);
+    states[path].previous = CAMERA;
+    states[path].inside = 0u;
     paths[path] = vec4<u32>(0u);
     queue[QUEUE_HEAD + path] = path;
 }

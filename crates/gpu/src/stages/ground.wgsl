@@ -1,5 +1,8 @@
 // Intersections with the ground plane: `trace/ground.rs` and `Plane::crossed` of spherule-core.
 
+// More than any distance at which anything occludes.
+const INFINITELY_FAR: f64 = 0x1p200lf;
+
 struct Crossing {
     crossed: bool,
     t: f64,
@@ -30,4 +33,13 @@ fn bounds_around(t: f64) -> vec2<f32> {
     let low = select(near, bitcast<f32>(max(bits, 1u) - 1u), f64(near) > t);
     let high = select(near, bitcast<f32>(bits + 1u), f64(near) < t);
     return vec2<f32>(select(min(low, FAR), -1.0, low < 1.0 / FAR), clamp(high, 1.0 / FAR, FAR));
+}
+
+// Finite numbers around the lesser of the distance at which a search ends and that of the ground.
+fn bounds_before(ground: Crossing, t: f64) -> vec2<f32> {
+    let end = select(t, min(ground.t, t), ground.crossed);
+    if end < f64(FAR) {
+        return bounds_around(end);
+    }
+    return vec2<f32>(FAR);
 }

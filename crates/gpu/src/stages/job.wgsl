@@ -16,6 +16,8 @@ struct Job {
     ground_height: f64,
     // Distance beyond which nothing occludes.
     distance: f64,
+    // Distance from its center, in radii, within which an emissive sphere is close.
+    reach: f64,
     // Hash of the seed, lower half first.
     seed: array<u32, 2>,
     flags: u32,
@@ -23,6 +25,8 @@ struct Job {
     depth: u32,
     // Row of the ground's material.
     ground_material: u32,
+    // Number of spheres.
+    spheres: u32,
     // Radiance of the environment: its mean, half of its difference, and the direction in which it increases.
     middle: array<f32, 3>,
     slope: array<f32, 3>,
@@ -32,15 +36,18 @@ struct Job {
     // Throughput below which roulette may end paths, and the probability with which they survive if it is fixed.
     threshold: f32,
     survival: f32,
-    // Of `world/lights/sun.rs`: the basis about its direction, 1 - cos of its angular radius, the density of directions
-    // toward it, its radiance, and the weight of light samples.
-    sun_tangent: array<f32, 3>,
-    sun_bitangent: array<f32, 3>,
-    sun_direction: array<f32, 3>,
-    sun_height: f32,
-    sun_pdf: f32,
-    sun_radiance: array<f32, 3>,
-    sun_weight: array<f32, 3>,
+    // Numbers of emissive spheres, of points and of suns.
+    emitters: u32,
+    points: u32,
+    suns: u32,
+    // Where their rows begin, those of the light tree, and those of its leaves or of a table.
+    found_rows: u32,
+    point_rows: u32,
+    sun_rows: u32,
+    node_rows: u32,
+    last_rows: u32,
+    // Number of the children of the light tree's root.
+    top: u32,
 }
 
 // Bits of the flags.
@@ -53,9 +60,11 @@ const GRADIENT: u32 = 32u;
 const ILLUMINATES: u32 = 64u;
 const ROULETTE_BY_THROUGHPUT: u32 = 128u;
 const ROULETTE_FIXED: u32 = 256u;
-const SUN: u32 = 512u;
-const SUN_DISC: u32 = 1024u;
-const MIRRORED_LIGHT: u32 = 2048u;
+const LIGHTS: u32 = 512u;
+const MIRRORED_LIGHT: u32 = 1024u;
+const LIGHT_TREE: u32 = 2048u;
+const LIGHT_TABLE: u32 = 4096u;
+const NESTED_GLASS: u32 = 8192u;
 
 fn has(flag: u32) -> bool {
     return (job.flags & flag) != 0u;

@@ -6,6 +6,11 @@ struct PathState {
     // specular surface, and negative as well if the path has met only specular surfaces. The largest finite values
     // stand for infinite ones where a specular surface has sampled the lights in the mirrored direction.
     previous: u32,
+    // The normal of the last surface, where the choice of a light depends on it.
+    normal: vec3<f32>,
+    // 1 if the ray is inside of the glass sphere on which it starts, and the normal where it entered.
+    inside: u32,
+    entry: vec3<f64>,
 }
 
 const SIGN: u32 = 0x80000000u;

@@ -5,7 +5,12 @@ use super::elisions::Elisions;
 use super::roulette::roulette_threshold;
 use crate::scene::{Integrator, Roulette, SamplerKind};
 use crate::shade::MaterialKind;
-use crate::world::{DeviceIntegration, DeviceJob, DeviceRoulette, DeviceSky, Radiance, Sun, World};
+use crate::world::{
+    DeviceIntegration, DeviceJob, DeviceLights, DeviceRoulette, DeviceSky, Radiance, World,
+};
+
+/// Most suns that are sampled where smooth surfaces mirror them: each has shadow rays of its own.
+const MAX_MIRRORED_SUNS: usize = 4;
 
 /// Returns the numbers of a job, or what it has that devices do not do.
 ///
@@ -18,7 +23,6 @@ pub fn device_job<'a>(job: &Job<'a>) -> Result<DeviceJob<'a>, &'static str> {
         Integrator::Whitted { .. } => return Err("devices have no whitted integrator"),
         Integrator::Path => DeviceIntegration::Paths {
             depth: job.depth(),
-            sun: world.lights.single_sun().map(Sun::terms),
             mirrored_light: job.samples_mirrored_light(),
             roulette: match job.settings.roulette {
                 Roulette::None => DeviceRoulette::None,
@@ -37,9 +41,14 @@ pub fn device_job<'a>(job: &Job<'a>) -> Result<DeviceJob<'a>, &'static str> {
         return Err("no work is to be skipped");
     }
     let Some(sky) = sky(world) else { return Err("the sky is a picture") };
+    let lights = match integration {
+        DeviceIntegration::Occlusion { .. } => DeviceLights::default(),
+        DeviceIntegration::Paths { .. } => world.lights.for_devices(),
+    };
     Ok(DeviceJob {
         world,
         integration,
+        lights,
         camera: world.camera.terms(),
         sky,
         seed: job.sampler.hashed_seed(),
@@ -69,16 +78,19 @@ fn unsupported(job: &Job) -> Option<&'static str> {
     if let Integrator::Ao { distance } = job.settings.integrator {
         return (distance == 0.0).then_some("nothing occludes");
     }
-    if !world.lights.is_empty() && world.lights.single_sun().is_none() {
-        return Some("the scene has lights other than a sun and an even sky");
+    if job.samples_mirrored_light() && world.lights.suns.len() > MAX_MIRRORED_SUNS {
+        return Some("many suns are mirrored");
     }
     if job.settings.caustics && world.has_caustics() {
         return Some("caustics are sampled");
     }
-    if world.features.has(MaterialKind::Dielectric) {
-        return Some("the scene has glass");
+    if !world.features.has(MaterialKind::Dielectric) {
+        return None;
     }
-    world.features.has(MaterialKind::Emitter).then_some("the scene has emitters")
+    if job.samples_mirrored_light() {
+        return Some("glass mirrors lights");
+    }
+    (!world.features.glass_at_camera.is_empty()).then_some("glass is around the camera")
 }
 
 /// Returns the sky, unless it is a picture.

@@ -88,6 +88,11 @@ impl Distribution {
         self.cumulative.len() - 1
     }
 
+    /// Cumulative probabilities, from 0 to 1: one more than indices.
+    pub(crate) fn cumulative(&self) -> &[f32] {
+        &self.cumulative
+    }
+
     /// Chooses an index by a draw in [0, 1); the index does not decrease as the draw increases.
     #[inline]
     pub fn sample(&self, u: f32) -> Choice {

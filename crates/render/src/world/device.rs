@@ -107,9 +107,7 @@ pub enum DeviceIntegration {
         depth: u32,
         /// Russian roulette.
         roulette: DeviceRoulette,
-        /// The sun, if it is the only light.
-        sun: Option<DeviceSun>,
-        /// True if the sun is sampled where smooth surfaces mirror it.
+        /// True if suns and emissive spheres are sampled where smooth surfaces mirror them.
         mirrored_light: bool,
     },
 }
@@ -123,6 +121,76 @@ pub enum DeviceRoulette {
     ByThroughput(f32),
     /// Paths survive each bounce with this probability.
     Fixed(f32),
+}
+
+/// The lights that paths sample: emissive spheres, points and suns, which are numbered in this order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DeviceLights {
+    /// Rows and radiance of the emissive spheres.
+    pub emitters: Vec<(u32, Rgb)>,
+    /// The points.
+    pub points: Vec<DevicePoint>,
+    /// The suns.
+    pub suns: Vec<DeviceSun>,
+    /// How one of them is chosen.
+    pub choice: DeviceLightChoice,
+    /// Distance from its center, in radii, within which an emissive sphere is close.
+    pub reach: f64,
+}
+
+/// How a light is chosen.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum DeviceLightChoice {
+    /// None is luminous.
+    #[default]
+    None,
+    /// There is only one.
+    Single,
+    /// By the light tree.
+    Tree(DeviceLightTree),
+    /// By cumulative probabilities, from 0 to 1: one more than lights.
+    Table(Vec<f32>),
+}
+
+/// The light tree.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeviceLightTree {
+    /// The nodes; the children of each are neighbors, and those of the root the first.
+    pub nodes: Vec<DeviceLightNode>,
+    /// Number of the root's children.
+    pub top: u32,
+    /// The leaf of each light; [`u32::MAX`] for one that is not luminous.
+    pub leaf: Vec<u32>,
+}
+
+/// A node of the light tree.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DeviceLightNode {
+    /// Center of its bounds.
+    pub center: glam::Vec3,
+    /// Their radius, negative if light samples find nothing inside.
+    pub radius: f32,
+    /// Irradiance on a plane that faces the light, times the squared distance.
+    pub power: f32,
+    /// Irradiance of light without falloff.
+    pub steady: f32,
+    /// First child; the light of a leaf.
+    pub child: u32,
+    /// Number of children, at most 16; 0 for a leaf.
+    pub children: u32,
+    /// Parent; [`u32::MAX`] for children of the root.
+    pub parent: u32,
+}
+
+/// A point light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DevicePoint {
+    /// Its place.
+    pub position: glam::DVec3,
+    /// Radiant intensity; irradiance if there is no falloff.
+    pub intensity: Rgb,
+    /// Scale of the distance in the falloff; 0 if there is none.
+    pub falloff: f64,
 }
 
 /// A sun.
@@ -158,6 +226,8 @@ pub struct DeviceJob<'a> {
     pub world: &'a World,
     /// The integrator.
     pub integration: DeviceIntegration,
+    /// The lights; none for ambient occlusion.
+    pub lights: DeviceLights,
     /// The camera.
     pub camera: CameraTerms,
     /// The sky.

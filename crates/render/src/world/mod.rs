@@ -37,8 +37,9 @@ pub(crate) use caustics::{
 pub use census::Features;
 pub use cut::{Cut, Span};
 pub use device::{
-    DeviceIntegration, DeviceIntegrator, DeviceJob, DevicePath, DevicePaths, DevicePixel,
-    DevicePixels, DeviceRoulette, DeviceSky, DeviceSun,
+    DeviceIntegration, DeviceIntegrator, DeviceJob, DeviceLightChoice, DeviceLightNode,
+    DeviceLightTree, DeviceLights, DevicePath, DevicePaths, DevicePixel, DevicePixels, DevicePoint,
+    DeviceRoulette, DeviceSky, DeviceSun,
 };
 pub use environment::{
     Environment, Irradiance, PartBounds, Picture, Radiance, SkyLight, SkySamples,

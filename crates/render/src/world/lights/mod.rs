@@ -1,6 +1,7 @@
 //! Lights that can be sampled: emissive spheres, points, suns and a picture of the sky.
 
 mod build;
+mod device;
 mod point;
 mod row;
 mod sampler;
