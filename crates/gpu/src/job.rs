@@ -31,8 +31,6 @@ pub(crate) struct JobNumbers {
     threshold: f32,
     survival: f32,
     lights: LightNumbers,
-    /// To a multiple of eight bytes.
-    unused: u32,
 }
 
 /// Bits of the flags, as in `job.wgsl`.
@@ -51,6 +49,7 @@ mod flag {
     pub(super) const LIGHT_TREE: u32 = 2048;
     pub(super) const LIGHT_TABLE: u32 = 4096;
     pub(super) const NESTED_GLASS: u32 = 8192;
+    pub(super) const PICTURE: u32 = 16384;
 }
 
 /// What integrators have in different ways.
@@ -76,6 +75,7 @@ impl JobNumbers {
             (sky.background.is_some(), flag::BACKGROUND),
             (sky.gradient.is_some(), flag::GRADIENT),
             (sky.illuminates, flag::ILLUMINATES),
+            (job.picture.is_some(), flag::PICTURE),
             (job.world.features.nested_glass, flag::NESTED_GLASS),
             (job.lights.choice != DeviceLightChoice::None, flag::LIGHTS),
             (matches!(job.lights.choice, DeviceLightChoice::Tree(_)), flag::LIGHT_TREE),
@@ -106,7 +106,6 @@ impl JobNumbers {
             threshold: own.threshold,
             survival: own.survival,
             lights,
-            unused: 0,
         }
     }
 }

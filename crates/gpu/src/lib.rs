@@ -26,6 +26,7 @@ mod materials;
 mod nodes;
 mod paths;
 mod probe;
+mod sky;
 mod spheres;
 mod stages;
 mod times;

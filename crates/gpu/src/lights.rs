@@ -19,6 +19,7 @@ pub(crate) struct LightNumbers {
     emitters: u32,
     points: u32,
     suns: u32,
+    sky_parts: u32,
     found_rows: u32,
     point_rows: u32,
     sun_rows: u32,
@@ -43,6 +44,7 @@ pub(crate) fn rows(lights: &DeviceLights) -> (Vec<[u32; 4]>, LightNumbers) {
         emitters: lights.emitters.len() as u32,
         points: lights.points.len() as u32,
         suns: lights.suns.len() as u32,
+        sky_parts: lights.sky_parts as u32,
         ..LightNumbers::default()
     };
     numbers.found_rows = rows.len() as u32;

@@ -7,6 +7,7 @@ use crate::film;
 use crate::job::JobNumbers;
 use crate::lights;
 use crate::materials;
+use crate::sky;
 use crate::stages::Kernel;
 use crate::tree::{Answered, DeviceTree, Params};
 use bytemuck::Pod;
@@ -36,6 +37,7 @@ struct JobPaths {
     needs: Needs,
     numbers: wgpu::Buffer,
     lights: wgpu::Buffer,
+    sky: wgpu::Buffer,
     sobol: wgpu::Buffer,
     offsets: wgpu::Buffer,
     /// Columns of paths, of the size of the last batch or larger.
@@ -153,6 +155,10 @@ impl JobPaths {
             },
             numbers: filled("job", bytemuck::bytes_of(&JobNumbers::of(job, light_numbers)))?,
             lights: filled("lights", bytemuck::cast_slice(&lights))?,
+            sky: filled(
+                "picture of the sky",
+                bytemuck::cast_slice(&sky::rows(job.picture.as_ref())),
+            )?,
             sobol: filled("direction vectors", bytemuck::cast_slice(&job.sobol))?,
             offsets: filled("filter", bytemuck::cast_slice(job.offsets.unwrap_or_default()))?,
             columns: Mutex::default(),
@@ -223,7 +229,7 @@ impl JobPaths {
         queue: usize,
     ) -> Result<(), DeviceError> {
         let Columns { params, pixels, rays, found, sequences, states, paths, queues, .. } = columns;
-        let Self { numbers, sobol, offsets, appearance, materials, lights, .. } = self;
+        let Self { numbers, sobol, offsets, appearance, materials, lights, sky, .. } = self;
         let shadows = &columns.shadows;
         // Shadow rays are the paths' own where no others follow.
         let [shadow_rays, shadow_found] =
@@ -249,11 +255,11 @@ impl JobPaths {
                 buffers.extend(self.tree.spheres());
                 buffers.extend([appearance, materials, sobol, sequences, found, rays]);
                 if let DeviceIntegration::Occlusion { .. } = self.integration {
-                    buffers.extend([&shadows.lights, paths, queue, &shadows.queue]);
+                    buffers.extend([&shadows.lights, paths, queue, &shadows.queue, sky]);
                     Kernel::Occlusion
                 } else {
                     buffers.extend([states, paths, &shadows.rays, &shadows.lights]);
-                    buffers.extend([queue, next, &shadows.queue, lights, &columns.interiors]);
+                    buffers.extend([queue, next, &shadows.queue, lights, &columns.interiors, sky]);
                     Kernel::Path
                 }
             }

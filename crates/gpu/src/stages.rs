@@ -82,11 +82,13 @@ impl Kernel {
             include_str!("stages/warp.wgsl"),
             include_str!("stages/ground.wgsl"),
         ];
-        const SURFACE: [&str; 5] = [
+        const SURFACE: [&str; 7] = [
             SPHERES,
             include_str!("stages/materials.wgsl"),
             include_str!("stages/surface.wgsl"),
             include_str!("stages/basis.wgsl"),
+            include_str!("stages/angles.wgsl"),
+            include_str!("stages/sky.wgsl"),
             include_str!("stages/environment.wgsl"),
         ];
         const BSDFS: [&str; 7] = [
@@ -98,12 +100,13 @@ impl Kernel {
             include_str!("stages/plastic.wgsl"),
             include_str!("stages/reflective.wgsl"),
         ];
-        const LIGHTS: [&str; 6] = [
+        const LIGHTS: [&str; 7] = [
             include_str!("stages/lights.wgsl"),
             include_str!("stages/light_tree.wgsl"),
             include_str!("stages/sphere_light.wgsl"),
             include_str!("stages/point_light.wgsl"),
             include_str!("stages/sun.wgsl"),
+            include_str!("stages/sky_light.wgsl"),
             include_str!("stages/direct_light.wgsl"),
         ];
         const PATH: [&str; 10] = [

@@ -11,6 +11,7 @@ use spherule_gpu::{Answered, Device, DeviceError, DeviceTree, Integrator as Devi
 use spherule_render::World;
 use spherule_render::bvh::Tree;
 use spherule_render::film::Region;
+use spherule_render::image::Image;
 use spherule_render::render::{
     End, ImagePart, Options, Progress, Render, ResumableRender, not_followed, render,
 };
@@ -354,6 +355,55 @@ fn glass_that_stands_alone_is_the_processors() {
                 let case = format!("{name} glass, background {background}, lights {lights}");
                 let found = compare(&case, &scene, &device);
                 assert!(found.unknown_paths * 20 < found.paths, "{case} {found:?}");
+            }
+        }
+    }
+}
+
+/// A picture of a sky with some colors, a small sun or none, and black pixels.
+fn sky_picture(width: u32, height: u32, sun: bool) -> Image {
+    let pixel = |i: u32| {
+        let (x, y) = (i % width, i / width);
+        if sun && (x, y) == (width / 3, height / 4) {
+            return [900.0, 800.0, 600.0];
+        }
+        let shade = (i.wrapping_mul(0x9e37_79b9) >> 24) as f32 / 256.0;
+        if y > height / 2 && x > width / 2 { [0.0; 3] } else { [0.6 * shade, 0.5, 1.1 - shade] }
+    };
+    Image { width, height, pixels: (0..width * height).map(pixel).collect() }
+}
+
+#[test]
+fn pictures_of_skies_are_the_processors() {
+    let Some(device) = device() else { return };
+    for (size, sun, illuminates) in [
+        ((40, 20), true, true),
+        ((3, 2), false, true),
+        ((1, 1), false, true),
+        ((17, 30), true, false),
+    ] {
+        for choice in [LightChoice::Tree, LightChoice::Power] {
+            for others in [false, true] {
+                let mut scene = named("paper-field-20.toml");
+                diffuse(&mut scene);
+                of_materials(&mut scene, &rough_materials());
+                if others {
+                    add_emitters(&mut scene, &rough_materials());
+                    add_lights(&mut scene);
+                }
+                let image = Arc::new(sky_picture(size.0, size.1, sun));
+                let up = DVec3::new(0.1, 1.0, 0.2).normalize();
+                scene.environment.map =
+                    EnvironmentMap::Picture { image, up, rotation: 0.7, scale: 1.3 };
+                scene.environment.illuminates = illuminates;
+                scene.settings.caustics = false;
+                scene.settings.light_choice = choice;
+                for integrator in [Integrator::Path, Integrator::Ao { distance: 2.0 }] {
+                    scene.settings.integrator = integrator;
+                    let case = format!("sky {size:?}, {choice:?}, others {others} {integrator:?}");
+                    let found = compare(&case, &scene, &device);
+                    assert!(found.unknown_paths * 20 < found.paths, "{case} {found:?}");
+                }
             }
         }
     }

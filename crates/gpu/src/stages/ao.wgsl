@@ -16,6 +16,7 @@
 @group(0) @binding(13) var<storage, read_write> paths: array<vec4<u32>>;
 @group(0) @binding(14) var<storage, read> queue: array<u32>;
 @group(0) @binding(15) var<storage, read_write> shadow_queue: array<atomic<u32>>;
+@group(0) @binding(16) var<storage, read> sky_rows: array<vec4<u32>>;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {

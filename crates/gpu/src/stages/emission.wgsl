@@ -13,6 +13,17 @@ fn sun_weight(path: u32, sun: u32, previous: u32) -> f32 {
     return power_heuristic(previous_density(previous), keep(probability * sun_pdf(sun)));
 }
 
+// The weight of the sky's picture where a light sample may have found it, from a path's last point.
+fn sky_weight(path: u32, direction: vec3<f32>, previous: u32) -> f32 {
+    if job.sky_parts == 0u || !light_sampled(previous) {
+        return 1.0;
+    }
+    let found = picture_density(direction);
+    let light = job.emitters + job.points + job.suns + found.part;
+    let probability = light_probability(ray_origin(path), states[path].normal, light);
+    return power_heuristic(previous_density(previous), keep(found.pdf * probability));
+}
+
 // The light of a ray that leaves the scene.
 fn escaped_light(path: u32, previous: u32) -> vec3<f32> {
     let direction = ray_direction(path);
@@ -21,7 +32,7 @@ fn escaped_light(path: u32, previous: u32) -> vec3<f32> {
     }
     var light = vec3<f32>(0.0);
     if has(ILLUMINATES) || specular_only(previous) {
-        light = environment_radiance(direction);
+        light = scaled(environment_radiance(direction), sky_weight(path, direction, previous));
     }
     let own = ray_own(path);
     // Glass shows the background, too.

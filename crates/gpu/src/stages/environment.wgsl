@@ -1,6 +1,9 @@
 // Radiance of rays that hit nothing: `world/environment.rs`.
 
 fn environment_radiance(direction: vec3<f32>) -> vec3<f32> {
+    if has(PICTURE) {
+        return picture_radiance(direction);
+    }
     let middle = vector32(job.middle);
     if !has(GRADIENT) {
         return middle;

@@ -36,10 +36,11 @@ struct Job {
     // Throughput below which roulette may end paths, and the probability with which they survive if it is fixed.
     threshold: f32,
     survival: f32,
-    // Numbers of emissive spheres, of points and of suns.
+    // Numbers of emissive spheres, of points, of suns, and of parts of the sky's picture.
     emitters: u32,
     points: u32,
     suns: u32,
+    sky_parts: u32,
     // Where their rows begin, those of the light tree, and those of its leaves or of a table.
     found_rows: u32,
     point_rows: u32,
@@ -65,6 +66,7 @@ const MIRRORED_LIGHT: u32 = 1024u;
 const LIGHT_TREE: u32 = 2048u;
 const LIGHT_TABLE: u32 = 4096u;
 const NESTED_GLASS: u32 = 8192u;
+const PICTURE: u32 = 16384u;
 
 fn has(flag: u32) -> bool {
     return (job.flags & flag) != 0u;

@@ -54,7 +54,7 @@ fn cumulative(place: u32) -> f32 {
 fn choose_by_table(draw: f32) -> LightChoice {
     let u = min(draw, ONE_BELOW);
     var low = 0u;
-    var high = job.emitters + job.points + job.suns - 1u;
+    var high = job.emitters + job.points + job.suns + job.sky_parts - 1u;
     while low < high {
         let middle = (low + high) / 2u;
         if cumulative(middle + 1u) <= u {
@@ -95,8 +95,10 @@ fn sample_light(point: vec3<f32>, normal: vec3<f32>, own: u32, numbers: vec4<f32
         sample = sample_sphere_light(point, own, choice.light, u);
     } else if choice.light < job.emitters + job.points {
         sample = sample_point_light(point, choice.light - job.emitters);
-    } else {
+    } else if choice.light < job.emitters + job.points + job.suns {
         sample = sample_sun(choice.light - job.emitters - job.points, u);
+    } else {
+        sample = sample_sky(choice.light - job.emitters - job.points - job.suns, u);
     }
     if has(LIGHT_TREE) || has(LIGHT_TABLE) {
         sample.weight = quotients(sample.weight, choice.probability);

@@ -23,6 +23,7 @@
 @group(0) @binding(19) var<storage, read> light_rows: array<vec4<u32>>;
 // Of each path the glass spheres that contain it, or MISS.
 @group(0) @binding(20) var<storage, read_write> interiors: array<u32>;
+@group(0) @binding(21) var<storage, read> sky_rows: array<vec4<u32>>;
 
 fn go_on(path: u32) {
     let place = atomicAdd(&next_queue[3], 1u);

@@ -3,10 +3,10 @@
 use super::Job;
 use super::elisions::Elisions;
 use super::roulette::roulette_threshold;
-use crate::scene::{Integrator, Roulette, SamplerKind};
+use crate::scene::{Integrator, Rgb, Roulette, SamplerKind};
 use crate::shade::MaterialKind;
 use crate::world::{
-    DeviceIntegration, DeviceJob, DeviceLights, DeviceRoulette, DeviceSky, Radiance, World,
+    DeviceIntegration, DeviceJob, DeviceLights, DeviceRoulette, DeviceSky, Picture, Radiance, World,
 };
 
 /// Most suns that are sampled where smooth surfaces mirror them: each has shadow rays of its own.
@@ -40,7 +40,6 @@ pub fn device_job<'a>(job: &Job<'a>) -> Result<DeviceJob<'a>, &'static str> {
     if job.elisions != Elisions::ALL {
         return Err("no work is to be skipped");
     }
-    let Some(sky) = sky(world) else { return Err("the sky is a picture") };
     let lights = match integration {
         DeviceIntegration::Occlusion { .. } => DeviceLights::default(),
         DeviceIntegration::Paths { .. } => world.lights.for_devices(),
@@ -50,7 +49,8 @@ pub fn device_job<'a>(job: &Job<'a>) -> Result<DeviceJob<'a>, &'static str> {
         integration,
         lights,
         camera: world.camera.terms(),
-        sky,
+        sky: sky(world),
+        picture: world.environment.picture().map(Picture::for_devices),
         seed: job.sampler.hashed_seed(),
         sobol: job.sampler.table(),
         offsets: job.filter.offsets(),
@@ -93,14 +93,14 @@ fn unsupported(job: &Job) -> Option<&'static str> {
     (!world.features.glass_at_camera.is_empty()).then_some("glass is around the camera")
 }
 
-/// Returns the sky, unless it is a picture.
-fn sky(world: &World) -> Option<DeviceSky> {
+/// Returns the sky; a picture counts as black.
+fn sky(world: &World) -> DeviceSky {
     let environment = &world.environment;
     let (middle, gradient) = match &environment.radiance {
         Radiance::Constant(color) => (*color, None),
         Radiance::Gradient { middle, slope, up } => (*middle, Some((*slope, *up))),
-        Radiance::Picture(_) => return None,
+        Radiance::Picture(_) => (Rgb::ZERO, None),
     };
     let (background, illuminates) = (environment.background, environment.illuminates);
-    Some(DeviceSky { middle, gradient, background, illuminates })
+    DeviceSky { middle, gradient, background, illuminates }
 }

@@ -54,6 +54,11 @@ impl Distribution2d {
         Some(Self { rows: Distribution::new(&sums)?, columns })
     }
 
+    /// Cumulative probabilities of the rows, and of the cells in each.
+    pub(crate) fn cumulative(&self) -> (&[f32], impl Iterator<Item = &[f32]>) {
+        (self.rows.cumulative(), self.columns.iter().map(Distribution::cumulative))
+    }
+
     /// Chooses a cell in each of `lanes` by two draws in [0, 1); in the other lanes, the first.
     ///
     /// `u[0]` decides the column and `u[1]` the row; both increase with their draw.

@@ -4,11 +4,13 @@
 //! that it does not know it: then the processor follows that path.
 
 use super::{CameraTerms, World};
+use crate::image::Image;
 use crate::sampling::Basis;
 use crate::scene::Rgb;
 use bytemuck::{Pod, Zeroable};
 use std::fmt::Debug;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// A device that follows the paths of a world whose spheres it has.
 pub trait DeviceIntegrator: Debug + Send + Sync {
@@ -123,7 +125,8 @@ pub enum DeviceRoulette {
     Fixed(f32),
 }
 
-/// The lights that paths sample: emissive spheres, points and suns, which are numbered in this order.
+/// The lights that paths sample: emissive spheres, points, suns and parts of a picture of the sky, which are numbered in this
+/// order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeviceLights {
     /// Rows and radiance of the emissive spheres.
@@ -132,6 +135,8 @@ pub struct DeviceLights {
     pub points: Vec<DevicePoint>,
     /// The suns.
     pub suns: Vec<DeviceSun>,
+    /// Number of parts of the sky's picture that are sampled.
+    pub sky_parts: usize,
     /// How one of them is chosen.
     pub choice: DeviceLightChoice,
     /// Distance from its center, in radii, within which an emissive sphere is close.
@@ -219,6 +224,32 @@ pub struct DeviceSky {
     pub illuminates: bool,
 }
 
+/// A picture of the sky, by longitude and latitude.
+#[derive(Clone, Debug)]
+pub struct DevicePicture {
+    /// The radiance of its pixels, before it is scaled.
+    pub image: Arc<Image>,
+    /// Factor on the radiance.
+    pub scale: f32,
+    /// Its axes.
+    pub axes: Basis,
+    /// Of each row of patches between pixel centers the sines at its ends, and the reciprocal of a patch's area.
+    pub rows: Vec<[f32; 3]>,
+    /// The parts that are lights of their own.
+    pub parts: Vec<DeviceSkyPart>,
+}
+
+/// A part of a picture of the sky: a rectangle of patches, which may wrap around.
+#[derive(Clone, Debug)]
+pub struct DeviceSkyPart {
+    /// The first column and row, width and height.
+    pub region: [u32; 4],
+    /// Cumulative probabilities of its rows, and of the patches in each.
+    pub rows: Vec<f32>,
+    /// See `rows`.
+    pub columns: Vec<Vec<f32>>,
+}
+
 /// The numbers of a job.
 #[derive(Clone, Debug)]
 pub struct DeviceJob<'a> {
@@ -232,6 +263,8 @@ pub struct DeviceJob<'a> {
     pub camera: CameraTerms,
     /// The sky.
     pub sky: DeviceSky,
+    /// Its picture, in place of the radiance, if it has one.
+    pub picture: Option<DevicePicture>,
     /// Hash of the seed of samples.
     pub seed: u64,
     /// Sobol's direction vectors: [`Sampler::table`](crate::sampling::Sampler::table).

@@ -38,8 +38,8 @@ pub use census::Features;
 pub use cut::{Cut, Span};
 pub use device::{
     DeviceIntegration, DeviceIntegrator, DeviceJob, DeviceLightChoice, DeviceLightNode,
-    DeviceLightTree, DeviceLights, DevicePath, DevicePaths, DevicePixel, DevicePixels, DevicePoint,
-    DeviceRoulette, DeviceSky, DeviceSun,
+    DeviceLightTree, DeviceLights, DevicePath, DevicePaths, DevicePicture, DevicePixel,
+    DevicePixels, DevicePoint, DeviceRoulette, DeviceSky, DeviceSkyPart, DeviceSun,
 };
 pub use environment::{
     Environment, Irradiance, PartBounds, Picture, Radiance, SkyLight, SkySamples,

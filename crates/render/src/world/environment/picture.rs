@@ -16,6 +16,7 @@ use crate::lanes::{Lanes, MAX_LANES, Mask, set_bits};
 use crate::sampling::{Basis, Bilinear, CellRow, Distribution2d, sine_cosine, turns};
 use crate::scene::Rgb;
 use crate::vec3;
+use crate::world::{DevicePicture, DeviceSkyPart};
 use glam::{DMat3, DQuat, DVec3, Vec3};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -191,6 +192,27 @@ impl Picture {
         let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
         let distance = |patch| corners.map(|corner| toward(patch, corner).distance(center));
         (center, patches().flat_map(distance).fold(0.0, f64::max))
+    }
+
+    /// Returns the picture for devices.
+    pub(crate) fn for_devices(&self) -> DevicePicture {
+        let part = |part: &Part| {
+            let (rows, columns) = part.distribution.cumulative();
+            let Region { column, row, width, height } = part.region;
+            DeviceSkyPart {
+                region: [column, row, width, height].map(|x| x as u32),
+                rows: rows.to_vec(),
+                columns: columns.map(<[f32]>::to_vec).collect(),
+            }
+        };
+        let row = |row: &PatchRow| [row.sines[0], row.sines[1], row.density];
+        DevicePicture {
+            image: Arc::clone(&self.image),
+            scale: self.scale,
+            axes: self.axes,
+            rows: self.rows.iter().map(row).collect(),
+            parts: self.parts.iter().map(part).collect(),
+        }
     }
 
     /// Returns the parts that are sampled as lights of their own: the sky without its sun, and the sun.

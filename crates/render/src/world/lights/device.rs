@@ -9,7 +9,7 @@ use crate::world::{
 use glam::Vec3;
 
 impl Lights {
-    /// Returns the lights for devices, which have no pictures of skies.
+    /// Returns the lights for devices.
     pub(crate) fn for_devices(&self) -> DeviceLights {
         let points = self.points.iter().map(|point| DevicePoint {
             position: point.position,
@@ -20,6 +20,7 @@ impl Lights {
             emitters: self.emitters.iter().copied().zip(self.radiance.iter().copied()).collect(),
             points: points.collect(),
             suns: self.suns.iter().map(Sun::terms).collect(),
+            sky_parts: self.sky_parts,
             choice: match &self.sampler {
                 LightSampler::None => DeviceLightChoice::None,
                 LightSampler::Single => DeviceLightChoice::Single,
