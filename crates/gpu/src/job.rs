@@ -31,6 +31,8 @@ pub(crate) struct JobNumbers {
     threshold: f32,
     survival: f32,
     lights: LightNumbers,
+    shadow_samples: u32,
+    all_shadows: u32,
 }
 
 /// Bits of the flags, as in `job.wgsl`.
@@ -59,6 +61,7 @@ struct IntegrationNumbers {
     depth: u32,
     threshold: f32,
     survival: f32,
+    shadow_samples: u32,
 }
 
 impl JobNumbers {
@@ -106,17 +109,40 @@ impl JobNumbers {
             threshold: own.threshold,
             survival: own.survival,
             lights,
+            shadow_samples: own.shadow_samples,
+            all_shadows: shadow_samples(job) as u32,
         }
     }
+}
+
+/// Returns the number of shadow samples of a surface in Whitted ray tracing.
+pub(crate) fn shadow_samples(job: &DeviceJob) -> usize {
+    let DeviceIntegration::Whitted { shadow_samples, sky, .. } = job.integration else { return 0 };
+    let lights = &job.lights;
+    let delta = lights.points.len() + lights.suns.iter().filter(|sun| sun.disc.is_none()).count();
+    let suns = lights.suns.iter().filter(|sun| sun.disc.is_some()).count();
+    let extended = lights.emitters.len() + suns + lights.sky_parts + usize::from(sky);
+    delta + shadow_samples as usize * extended
 }
 
 impl IntegrationNumbers {
     fn of(integration: DeviceIntegration) -> Self {
         let far = f64::from(FAR);
-        let mut numbers = Self { flags: 0, distance: far, depth: 0, threshold: 1.0, survival: 1.0 };
+        let mut numbers = Self {
+            flags: 0,
+            distance: far,
+            depth: 0,
+            threshold: 1.0,
+            survival: 1.0,
+            shadow_samples: 0,
+        };
         let (depth, roulette, mirrored_light) = match integration {
             DeviceIntegration::Occlusion { distance } => {
                 return Self { distance: far.min(distance), ..numbers };
+            }
+            DeviceIntegration::Whitted { depth, roulette, shadow_samples, .. } => {
+                numbers.shadow_samples = shadow_samples;
+                (depth, roulette, false)
             }
             DeviceIntegration::Paths { depth, roulette, mirrored_light } => {
                 (depth, roulette, mirrored_light)

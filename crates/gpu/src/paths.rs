@@ -4,11 +4,11 @@ use crate::columns::{BOUNCES, Columns, Needs};
 use crate::device::{Device, Size, Work};
 use crate::error::DeviceError;
 use crate::film;
-use crate::job::JobNumbers;
+use crate::job::{self, JobNumbers};
 use crate::lights;
 use crate::materials;
 use crate::sky;
-use crate::stages::Kernel;
+use crate::stages::{Kernel, WhittedStep};
 use crate::tree::{Answered, DeviceTree, Params};
 use bytemuck::Pod;
 use spherule_render::World;
@@ -35,6 +35,8 @@ struct JobPaths {
     materials: wgpu::Buffer,
     integration: DeviceIntegration,
     needs: Needs,
+    /// Shadow samples of a surface in Whitted ray tracing.
+    all_shadows: usize,
     numbers: wgpu::Buffer,
     lights: wgpu::Buffer,
     sky: wgpu::Buffer,
@@ -112,7 +114,10 @@ impl Integrator {
         let sequences = read_column(device, &columns.sequences, count)?;
         stage(Stage::FirstHits)?;
         let found = read_column(device, &columns.found, count)?;
-        stage(Stage::Surfaces)?;
+        stage(match job.integration {
+            DeviceIntegration::Occlusion { .. } => Stage::Occlusion,
+            _ => Stage::Path,
+        })?;
         let next_rays = read_column(device, &columns.rays, count)?;
         Ok(FirstStages { camera_rays, sequences, found, next_rays })
     }
@@ -149,6 +154,7 @@ impl JobPaths {
             appearance: integrator.appearance.clone(),
             materials: integrator.materials.clone(),
             integration: job.integration,
+            all_shadows: job::shadow_samples(job),
             needs: Needs {
                 shadows: shadow_rays(job),
                 nested_glass: job.world.features.nested_glass,
@@ -250,17 +256,23 @@ impl JobPaths {
                 buffers.extend([rays, found, queue]);
                 self.tree.queued_hits(false)
             }
-            Stage::Surfaces => {
+            Stage::Occlusion | Stage::Path | Stage::Whitted(_) => {
                 buffers.push(numbers);
                 buffers.extend(self.tree.spheres());
                 buffers.extend([appearance, materials, sobol, sequences, found, rays]);
-                if let DeviceIntegration::Occlusion { .. } = self.integration {
+                if let Stage::Occlusion = stage {
                     buffers.extend([&shadows.lights, paths, queue, &shadows.queue, sky]);
                     Kernel::Occlusion
                 } else {
                     buffers.extend([states, paths, &shadows.rays, &shadows.lights]);
                     buffers.extend([queue, next, &shadows.queue, lights, &columns.interiors, sky]);
-                    Kernel::Path
+                    match stage {
+                        Stage::Whitted(step) => {
+                            buffers.push(pixels);
+                            Kernel::Whitted(step)
+                        }
+                        _ => Kernel::Path,
+                    }
                 }
             }
             Stage::ShadowHits => {
@@ -281,9 +293,12 @@ impl JobPaths {
     /// Runs the stages of all paths of a batch.
     fn follow_all(&self, columns: &Columns, mut params: Params) -> Result<(), DeviceError> {
         let device = self.device();
-        let (depth, has_shadows) = match self.integration {
-            DeviceIntegration::Occlusion { .. } => (0, true),
-            DeviceIntegration::Paths { depth, .. } => (depth, self.needs.shadows > 0),
+        let (depth, surfaces, has_shadows) = match self.integration {
+            DeviceIntegration::Occlusion { .. } => (0, Stage::Occlusion, true),
+            DeviceIntegration::Paths { depth, .. } => (depth, Stage::Path, self.needs.shadows > 0),
+            DeviceIntegration::Whitted { depth, .. } => {
+                return self.follow_whitted(columns, params, depth);
+            }
         };
         let mut queue = 0;
         loop {
@@ -297,7 +312,7 @@ impl JobPaths {
                 columns.set_bounce(&mut work, place);
                 columns.clear(&mut work, &columns.queues[1 - queue]);
                 self.stage(&mut work, Stage::FirstHits, columns, queue)?;
-                self.stage(&mut work, Stage::Surfaces, columns, queue)?;
+                self.stage(&mut work, surfaces, columns, queue)?;
                 if has_shadows {
                     self.stage(&mut work, Stage::ShadowHits, columns, queue)?;
                     self.stage(&mut work, Stage::Shadows, columns, queue)?;
@@ -323,6 +338,61 @@ impl JobPaths {
     }
 }
 
+impl JobPaths {
+    /// Runs the stages of Whitted ray tracing, in which each surface has many shadow samples.
+    fn follow_whitted(
+        &self,
+        columns: &Columns,
+        mut params: Params,
+        depth: u32,
+    ) -> Result<(), DeviceError> {
+        let device = self.device();
+        let set = |params: &Params| device.write(&columns.params, bytemuck::bytes_of(params));
+        for bounce in 0..=depth {
+            let queue = (bounce % 2) as usize;
+            params.bounce = bounce;
+            set(&params);
+            let mut work = device.work();
+            if bounce == 0 {
+                self.stage(&mut work, Stage::Generate(params.count as usize), columns, queue)?;
+            }
+            self.stage(&mut work, Stage::FirstHits, columns, queue)?;
+            self.stage(&mut work, Stage::Whitted(WhittedStep::Light), columns, queue)?;
+            work.submit();
+            if bounce == depth {
+                break;
+            }
+            for first in (0..self.all_shadows).step_by(self.needs.shadows.max(1)) {
+                params.first_shadow = first as u32;
+                set(&params);
+                let mut work = device.work();
+                columns.clear(&mut work, &columns.shadows.queue);
+                self.stage(&mut work, Stage::Whitted(WhittedStep::Shadows), columns, queue)?;
+                self.stage(&mut work, Stage::ShadowHits, columns, queue)?;
+                self.stage(&mut work, Stage::Shadows, columns, queue)?;
+                work.submit();
+            }
+            let mut work = device.work();
+            columns.clear(&mut work, &columns.queues[1 - queue]);
+            self.stage(&mut work, Stage::Whitted(WhittedStep::Bounce), columns, queue)?;
+            let bytes = columns.head_to_read.size();
+            work.copy((&columns.queues[1 - queue], 0), &columns.head_to_read, bytes);
+            work.submit();
+            let mut head = Columns::head(0);
+            device.read(&columns.head_to_read, bytes, |view| {
+                head = bytemuck::pod_read_unaligned(view);
+            })?;
+            if head == Columns::head(0) {
+                break;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Shadow rays of a path that are traced at once in Whitted ray tracing.
+const SHADOWS_AT_ONCE: usize = 8;
+
 /// Returns the shadow rays of a path at each bounce: a light sample, and suns and an emissive sphere that are mirrored.
 fn shadow_rays(job: &DeviceJob) -> usize {
     match job.integration {
@@ -331,6 +401,7 @@ fn shadow_rays(job: &DeviceJob) -> usize {
             1 + job.lights.suns.len() + job.lights.emitters.len().min(1)
         }
         DeviceIntegration::Paths { .. } => 1,
+        DeviceIntegration::Whitted { .. } => job::shadow_samples(job).min(SHADOWS_AT_ONCE),
         DeviceIntegration::Occlusion { .. } => 0,
     }
 }
@@ -342,8 +413,12 @@ enum Stage {
     Generate(usize),
     /// First hits of the paths' rays.
     FirstHits,
-    /// Surfaces, light and next rays.
-    Surfaces,
+    /// Surfaces and shadow rays of ambient occlusion.
+    Occlusion,
+    /// Surfaces, light and next rays of paths.
+    Path,
+    /// A step of Whitted ray tracing.
+    Whitted(WhittedStep),
     /// Whether shadow rays hit anything.
     ShadowHits,
     /// Light of shadow rays.

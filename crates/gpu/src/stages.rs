@@ -25,13 +25,26 @@ pub(crate) enum Kernel {
     Shadows,
     /// A bounce of paths.
     Path,
+    /// A step of a bounce of Whitted ray tracing.
+    Whitted(WhittedStep),
     /// Sums of pixels.
     Film,
 }
 
+/// A step of a bounce of Whitted ray tracing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum WhittedStep {
+    /// Light that the paths reach.
+    Light,
+    /// Shadow rays.
+    Shadows,
+    /// Next rays.
+    Bounce,
+}
+
 impl Kernel {
     /// The number of kernels.
-    pub(crate) const COUNT: usize = 22;
+    pub(crate) const COUNT: usize = 25;
 
     /// Returns its place among all kernels.
     pub(crate) fn place(self) -> usize {
@@ -45,6 +58,7 @@ impl Kernel {
             Self::Path => 19,
             Self::Doubles => 20,
             Self::Film => 21,
+            Self::Whitted(step) => 22 + step as usize,
         }
     }
 
@@ -59,6 +73,7 @@ impl Kernel {
         let constants: &[(&str, f64)] = match self {
             Self::Hits { any, counts, cut, .. } => &[("ANY", any), ("COUNT", counts), ("CUT", cut)]
                 .map(|(name, is)| (name, u8::from(is).into())),
+            Self::Whitted(step) => &[("STEP", f64::from(step as u8))],
             _ => &[],
         };
         device.kernel((name, &files.concat()), constants)
@@ -109,16 +124,19 @@ impl Kernel {
             include_str!("stages/sky_light.wgsl"),
             include_str!("stages/direct_light.wgsl"),
         ];
-        const PATH: [&str; 10] = [
+        const BOUNCE: [&str; 8] = [
             PATH_STATE,
             QUEUE,
             RAYS,
             SHADOW_RAYS,
-            include_str!("stages/mirrored_light.wgsl"),
+            include_str!("stages/path_columns.wgsl"),
             include_str!("stages/interior.wgsl"),
             include_str!("stages/glass.wgsl"),
-            include_str!("stages/emission.wgsl"),
             include_str!("stages/roulette.wgsl"),
+        ];
+        const PATH: [&str; 3] = [
+            include_str!("stages/mirrored_light.wgsl"),
+            include_str!("stages/emission.wgsl"),
             include_str!("stages/path.wgsl"),
         ];
         let of = |groups: &[&[&'static str]]| groups.concat();
@@ -148,7 +166,11 @@ impl Kernel {
                 let arithmetic = include_str!("stages/arithmetic.wgsl");
                 ("film", vec![PARAMS, arithmetic, include_str!("stages/film.wgsl")])
             }
-            Self::Path => ("path", of(&[&JOB, &SURFACE, &BSDFS, &LIGHTS, &PATH])),
+            Self::Whitted(_) => {
+                let whitted = include_str!("stages/whitted.wgsl");
+                ("whitted", of(&[&JOB, &SURFACE, &BSDFS, &LIGHTS, &BOUNCE, &[whitted]]))
+            }
+            Self::Path => ("path", of(&[&JOB, &SURFACE, &BSDFS, &LIGHTS, &BOUNCE, &PATH])),
         }
     }
 }

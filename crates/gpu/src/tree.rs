@@ -63,6 +63,7 @@ pub(crate) struct Params {
     pub(crate) samples: u32,
     pub(crate) bounce: u32,
     pub(crate) shadows: u32,
+    pub(crate) first_shadow: u32,
 }
 
 /// Buffers of one dispatch.

@@ -360,6 +360,51 @@ fn glass_that_stands_alone_is_the_processors() {
     }
 }
 
+#[test]
+fn whitted_ray_tracing_is_the_processors() {
+    let Some(device) = device() else { return };
+    let mut all: Vec<Material> =
+        opaque_materials().into_iter().map(|(_, material)| material).collect();
+    all.push(Material::Dielectric { ior: 1.5, color: Rgb::new(0.9, 1.0, 0.8) });
+    let mut followed = 0;
+    for path in files() {
+        for (shadow_samples, own_lights) in [(1, true), (3, false), (20, false)] {
+            let mut scene = load(&path);
+            scene.settings.integrator = Integrator::Whitted { shadow_samples };
+            if !own_lights {
+                diffuse(&mut scene);
+                add_emitters(&mut scene, &all);
+                // The ground cannot be glass or an emitter.
+                if let Some(ground) = &scene.ground {
+                    scene.materials[ground.material as usize].material = all[5].clone();
+                }
+                add_lights(&mut scene);
+                scene.settings.integrator = Integrator::Whitted { shadow_samples };
+                scene.settings.spp = 2;
+                if shadow_samples == 3 {
+                    scene.look.background = Background::Color(Rgb::new(0.1, 0.5, 0.3));
+                }
+            }
+            let case = format!("whitted {shadow_samples}, {}", path.display());
+            let world = World::build(&scene).unwrap();
+            // Hundreds of emitters have too many shadow samples.
+            if not_followed(&world, &scene.settings).is_none() {
+                compare(&case, &scene, &device);
+                followed += 1;
+            }
+        }
+    }
+    assert!(followed >= 28, "{followed}");
+    let mut scene = named("paper-field-20.toml");
+    diffuse(&mut scene);
+    let image = Arc::new(sky_picture(20, 10, true));
+    scene.environment.map =
+        EnvironmentMap::Picture { image, up: DVec3::Z, rotation: 0.7, scale: 1.3 };
+    scene.settings.integrator = Integrator::Whitted { shadow_samples: 5 };
+    let found = compare("whitted, picture of a sky", &scene, &device);
+    assert!(found.unknown_paths * 20 < found.paths, "{found:?}");
+}
+
 /// A picture of a sky with some colors, a small sun or none, and black pixels.
 fn sky_picture(width: u32, height: u32, sun: bool) -> Image {
     let pixel = |i: u32| {
@@ -615,9 +660,10 @@ fn what_devices_do_not_do_is_told() {
     };
     assert_eq!(told(&caustics), Some("caustics are sampled"));
     let whitted = |scene: &mut Scene| {
-        scene.settings.integrator = Integrator::Whitted { shadow_samples: 1 };
+        add_sun(scene, 5.0);
+        scene.settings.integrator = Integrator::Whitted { shadow_samples: 1025 };
     };
-    assert_eq!(told(&whitted), Some("devices have no whitted integrator"));
+    assert_eq!(told(&whitted), Some("each surface has many shadow samples"));
     let independent = |scene: &mut Scene| scene.settings.sampler = SamplerKind::Independent;
     assert_eq!(told(&independent), Some("devices have Sobol points only"));
     let suns = |scene: &mut Scene| {

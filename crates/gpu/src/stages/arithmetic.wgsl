@@ -76,6 +76,12 @@ fn normalized(v: vec3<f32>) -> vec3<f32> {
     return scaled(v, quotient(1.0, root(dot_fused(v, v))));
 }
 
+// `normalize` of glam.
+fn normalized_unfused(v: vec3<f32>) -> vec3<f32> {
+    let squares = keep3(v * v);
+    return scaled(v, quotient(1.0, root(keep(keep(squares.x + squares.y) + squares.z))));
+}
+
 fn dot_unfused(a: vec3<f64>, b: vec3<f64>) -> f64 {
     let products = kept3(a * b);
     return kept(kept(products.x + products.y) + products.z);

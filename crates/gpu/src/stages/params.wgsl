@@ -15,6 +15,8 @@ struct Params {
     bounce: u32,
     // Shadow rays of each path at most: in rows `count` apart.
     shadows: u32,
+    // The first of the shadow samples of a surface that come next, in Whitted ray tracing.
+    first_shadow: u32,
 }
 
 // Not a uniform buffer: drivers may compile kernels anew for its values, and then they know the 0.

@@ -3,11 +3,15 @@
 use super::Job;
 use super::elisions::Elisions;
 use super::roulette::roulette_threshold;
+use super::whitted;
 use crate::scene::{Integrator, Rgb, Roulette, SamplerKind};
 use crate::shade::MaterialKind;
 use crate::world::{
     DeviceIntegration, DeviceJob, DeviceLights, DeviceRoulette, DeviceSky, Picture, Radiance, World,
 };
+
+/// Most shadow samples of a surface in Whitted ray tracing.
+const MAX_SHADOW_SAMPLES: usize = 1024;
 
 /// Most suns that are sampled where smooth surfaces mirror them: each has shadow rays of its own.
 const MAX_MIRRORED_SUNS: usize = 4;
@@ -18,18 +22,26 @@ const MAX_MIRRORED_SUNS: usize = 4;
 /// A reason why devices do not follow paths.
 pub fn device_job<'a>(job: &Job<'a>) -> Result<DeviceJob<'a>, &'static str> {
     let world = job.world;
+    let roulette = match job.settings.roulette {
+        Roulette::None => DeviceRoulette::None,
+        Roulette::Throughput => DeviceRoulette::ByThroughput(roulette_threshold(world)),
+        Roulette::Fixed(p) => DeviceRoulette::Fixed(p as f32),
+    };
+    let depth = job.depth();
     let integration = match job.settings.integrator {
         Integrator::Ao { distance } => DeviceIntegration::Occlusion { distance },
-        Integrator::Whitted { .. } => return Err("devices have no whitted integrator"),
-        Integrator::Path => DeviceIntegration::Paths {
-            depth: job.depth(),
-            mirrored_light: job.samples_mirrored_light(),
-            roulette: match job.settings.roulette {
-                Roulette::None => DeviceRoulette::None,
-                Roulette::Throughput => DeviceRoulette::ByThroughput(roulette_threshold(world)),
-                Roulette::Fixed(p) => DeviceRoulette::Fixed(p as f32),
-            },
-        },
+        Integrator::Whitted { shadow_samples } => {
+            let sky = whitted::samples_sky(world);
+            let lights = world.lights.len() + usize::from(sky);
+            if lights.saturating_mul(shadow_samples as usize) > MAX_SHADOW_SAMPLES {
+                return Err("each surface has many shadow samples");
+            }
+            DeviceIntegration::Whitted { depth, roulette, shadow_samples, sky }
+        }
+        Integrator::Path => {
+            let mirrored_light = job.samples_mirrored_light();
+            DeviceIntegration::Paths { depth, roulette, mirrored_light }
+        }
     };
     if let Some(reason) = unsupported(job) {
         return Err(reason);
@@ -42,7 +54,7 @@ pub fn device_job<'a>(job: &Job<'a>) -> Result<DeviceJob<'a>, &'static str> {
     }
     let lights = match integration {
         DeviceIntegration::Occlusion { .. } => DeviceLights::default(),
-        DeviceIntegration::Paths { .. } => world.lights.for_devices(),
+        _ => world.lights.for_devices(),
     };
     Ok(DeviceJob {
         world,
@@ -81,7 +93,8 @@ fn unsupported(job: &Job) -> Option<&'static str> {
     if job.samples_mirrored_light() && world.lights.suns.len() > MAX_MIRRORED_SUNS {
         return Some("many suns are mirrored");
     }
-    if job.settings.caustics && world.has_caustics() {
+    let paths = job.settings.integrator == Integrator::Path;
+    if paths && job.settings.caustics && world.has_caustics() {
         return Some("caustics are sampled");
     }
     if !world.features.has(MaterialKind::Dielectric) {

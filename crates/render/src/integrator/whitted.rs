@@ -22,15 +22,12 @@ use crate::sampling::{Bases, cosine_hemispheres};
 use crate::scene::Rgb;
 use crate::shade::{BroadcastParams, Bsdf, Material, MaterialId, MaterialKind, mirror};
 use crate::vec3::Vec3 as Row3;
-use crate::world::{LightRow, ROW};
+use crate::world::{LightRow, ROW, World};
 use std::f32::consts::PI;
 
 /// Follows all paths to their ends, with `samples` shadow samples per light and hit.
 pub fn integrate(job: &Job, work: &mut Workspace, samples: u32) {
-    // A constant or gradient environment that illuminates surfaces is one more light.
-    let sky = job.world.environment.illuminates
-        && !job.world.environment.is_black()
-        && job.world.lights.sky_parts == 0;
+    let sky = samples_sky(job.world);
     let threshold = roulette_threshold(job.world);
     for bounce in 0.. {
         stages::intersect(job, work);
@@ -48,6 +45,12 @@ pub fn integrate(job: &Job, work: &mut Workspace, samples: u32) {
             return;
         }
     }
+}
+
+/// Returns whether a constant or gradient environment illuminates surfaces: it is one more light.
+pub(super) fn samples_sky(world: &World) -> bool {
+    let environment = &world.environment;
+    environment.illuminates && !environment.is_black() && world.lights.sky_parts == 0
 }
 
 /// Adds environment and suns to paths that leave the scene. They have come from the camera by mirrors

@@ -103,6 +103,17 @@ pub enum DeviceIntegration {
         /// Distance beyond which nothing occludes.
         distance: f64,
     },
+    /// Whitted ray tracing.
+    Whitted {
+        /// Maximum number of bounces.
+        depth: u32,
+        /// Russian roulette.
+        roulette: DeviceRoulette,
+        /// Shadow samples of each light that has extent, and of the sky.
+        shadow_samples: u32,
+        /// True if the sky is sampled, beside the lights.
+        sky: bool,
+    },
     /// Paths.
     Paths {
         /// Maximum number of bounces.
