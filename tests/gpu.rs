@@ -66,11 +66,17 @@ fn what_the_device_does_is_told() {
         paths.and_then(|paths| paths.parse().ok()).is_some_and(|paths: u64| paths > 1000),
         "{text}"
     );
-    let (.., notes) = render("gpu", &["--integrator", "ao", "--verbose"]);
-    assert!(notes.contains("follows paths from the camera to their ends"), "{notes}");
+    // The default field, with glass among its materials, but without caustics.
+    let (own, ..) = render("cpu", &["--no-caustics"]);
+    for more in
+        [["--integrator", "ao"].as_slice(), &["--no-caustics"], &["--integrator", "whitted"]]
+    {
+        let (image, _, notes) = render("gpu", &[more, &["--verbose"]].concat());
+        assert!(notes.contains("follows paths from the camera to their ends"), "{notes}");
+        assert!(more != ["--no-caustics"] || image == own);
+    }
     for (more, why) in [
         ([].as_slice(), "caustics are sampled"),
-        (&["--no-caustics"], "the scene has glass"),
         (&["--integrator", "ao", "--slice", "x>0", "--slice-mode", "hide"], "the scene has slices"),
     ] {
         let (.., notes) = render("gpu", more);
