@@ -287,7 +287,11 @@ impl JobPaths {
                 Kernel::Shadows
             }
         };
-        work.run(kernel, &buffers, size)
+        work.run(kernel, &buffers, size)?;
+        match self.tree.hits_again(kernel) {
+            Some(again) => work.run(again, &buffers, size),
+            None => Ok(()),
+        }
     }
 
     /// Runs the stages of all paths of a batch.

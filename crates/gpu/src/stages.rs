@@ -15,6 +15,8 @@ pub(crate) enum Kernel {
     /// Hits of rays: the first, or any if `any`; or, if `counts`, the visits of the search. Spheres may be `cut` into
     /// several columns. The rays are those in a queue if `queued`, else all.
     Hits { any: bool, counts: bool, cut: bool, queued: bool },
+    /// The same in double precision, for the rays whose answer is not known.
+    HitsAgain { any: bool, cut: bool, queued: bool },
     /// The test of double precision.
     Doubles,
     /// Camera rays.
@@ -44,7 +46,7 @@ pub(crate) enum WhittedStep {
 
 impl Kernel {
     /// The number of kernels.
-    pub(crate) const COUNT: usize = 25;
+    pub(crate) const COUNT: usize = 33;
 
     /// Returns its place among all kernels.
     pub(crate) fn place(self) -> usize {
@@ -59,6 +61,9 @@ impl Kernel {
             Self::Doubles => 20,
             Self::Film => 21,
             Self::Whitted(step) => 22 + step as usize,
+            Self::HitsAgain { any, cut, queued } => {
+                25 + [any, cut, queued].iter().fold(0, |place, &is| 2 * place + usize::from(is))
+            }
         }
     }
 
@@ -72,6 +77,8 @@ impl Kernel {
         let (name, files) = self.files();
         let constants: &[(&str, f64)] = match self {
             Self::Hits { any, counts, cut, .. } => &[("ANY", any), ("COUNT", counts), ("CUT", cut)]
+                .map(|(name, is)| (name, u8::from(is).into())),
+            Self::HitsAgain { any, cut, .. } => &[("ANY", any), ("AGAIN", true), ("CUT", cut)]
                 .map(|(name, is)| (name, u8::from(is).into())),
             Self::Whitted(step) => &[("STEP", f64::from(step as u8))],
             _ => &[],
@@ -143,7 +150,15 @@ impl Kernel {
         match self {
             Self::Hits { queued, .. } => {
                 let rows = if queued { QUEUED_RAYS } else { include_str!("stages/all_rows.wgsl") };
-                ("hits", vec![PARAMS, rows, SPHERES, include_str!("hits.wgsl")])
+                let test = include_str!("stages/test_sphere.wgsl");
+                ("hits", vec![PARAMS, rows, SPHERES, include_str!("hits.wgsl"), test])
+            }
+            Self::HitsAgain { queued, .. } => {
+                let rows = if queued { QUEUED_RAYS } else { include_str!("stages/all_rows.wgsl") };
+                let arithmetic = include_str!("stages/arithmetic.wgsl");
+                let test = include_str!("stages/test_sphere_again.wgsl");
+                let hits = include_str!("hits.wgsl");
+                ("hits again", vec![PARAMS, arithmetic, rows, SPHERES, hits, test])
             }
             Self::Doubles => {
                 let arithmetic = include_str!("stages/arithmetic.wgsl");

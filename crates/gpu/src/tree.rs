@@ -211,6 +211,14 @@ impl DeviceTree {
         Kernel::Hits { any, counts: false, cut: self.is_cut, queued: true }
     }
 
+    /// Returns the kernel that searches again for those of the rays whose answer is not known, in double precision; `None` after
+    /// measurements, and if the device's double precision is not the processor's.
+    pub(crate) fn hits_again(&self, kernel: Kernel) -> Option<Kernel> {
+        let Kernel::Hits { any, counts: false, cut, queued } = kernel else { return None };
+        let doubles = self.device.lacks_for_paths().is_none();
+        doubles.then_some(Kernel::HitsAgain { any, cut, queued })
+    }
+
     /// Returns whether single precision holds the spheres.
     pub(crate) fn is_single(&self) -> bool {
         self.single
@@ -356,13 +364,21 @@ impl DeviceTree {
         self.device.write(&lane.rays, bytemuck::cast_slice(rows));
         watch.end(QueryStage::Upload, &self.device)?;
         let bytes = size_of_val(found) as u64;
+        let again = self.hits_again(kernel);
         let kernel = self.device.compiled(kernel)?;
         let mut buffers = vec![&lane.params];
         buffers.extend(&self.columns);
         buffers.extend([&lane.rays, &lane.found]);
         let group = self.device.bind(kernel, &buffers);
-        self.device.dispatch((kernel, &group), found.len(), (&lane.found, &lane.copy, bytes));
+        let copy = (&lane.found, &lane.copy, bytes);
+        self.device.dispatch((kernel, &group), found.len(), copy);
+        if let Some(again) = again {
+            let again = self.device.compiled(again)?;
+            let group = self.device.bind(again, &buffers);
+            self.device.dispatch((again, &group), found.len(), copy);
+        }
         watch.end(QueryStage::Kernel, &self.device)?;
+        // Of the first search: after it, few rays are left.
         watch.clock(|| self.device.clock((kernel, &group), found.len()))?;
         self.device.read(&lane.copy, bytes, |view| {
             bytemuck::cast_slice_mut(found).copy_from_slice(view);

@@ -37,14 +37,6 @@ fn scatter_glass(path: u32, surface: ptr<function, Surface>, choice: f32) -> boo
     if has(NESTED_GLASS) && inside && !enter_sphere(path, hit) {
         return false;
     }
-    let next = vec3<f32>(sent);
-    var chord = INFINITELY_FAR;
-    if inside {
-        chord = chord_length(normal, (*surface).radius, next);
-    }
-    let ground = cross_ground((*surface).point, next, hit);
-    write_ray(path, (*surface).point, next, hit, bounds_before(ground, chord));
-    states[path].inside = select(0u, 1u, inside);
-    states[path].entry = normal;
+    write_next_ray(path, surface, vec3<f32>(sent), inside);
     return true;
 }

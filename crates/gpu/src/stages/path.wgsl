@@ -23,8 +23,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if known {
         kind = material_kind(material_at(surface.hit));
     }
-    let followed = known && (!surface.inside || kind == DIELECTRIC);
-    if !followed || (!cut && lights_set(params.bounce) >= SETS) {
+    if !known || (!cut && lights_set(params.bounce) >= SETS) {
         paths[path].w |= 1u;
         return;
     }
@@ -38,10 +37,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if kind == DIELECTRIC {
         if !scatter_glass(path, &surface, draw4(sequence, choices(params.bounce)).z) {
             paths[path].w |= 1u;
-            return;
         }
-        paths[path].w += BOUNCE_RAY;
-        go_on(path);
         return;
     }
     var bsdf = bsdf_at(surface.hit);
@@ -58,11 +54,13 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
                     paths[path].w |= 1u;
                     return;
                 }
-                write_shadow_ray(path, 0u, &surface, sample.direction, light, sample.t, sample.goal);
+                if !hides_itself(&surface, sample.direction, sample.t) {
+                    write_shadow_ray(path, 0u, &surface, sample.direction, light, sample.t, sample.goal);
+                }
             }
         }
     }
-    let mirrors = has(MIRRORED_LIGHT) && has_diffuse_base(&bsdf);
+    let mirrors = has(MIRRORED_LIGHT) && has_diffuse_base(&bsdf) && !surface.inside;
     if mirrors {
         let factor = keep3(state.throughput * bsdf_mirrored(&bsdf, outgoing));
         let toward = normalized(to_world(basis, mirror(outgoing)));
@@ -89,13 +87,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     states[path].throughput = quotients(throughput, survival);
     states[path].previous = previous;
-    states[path].inside = 0u;
     if has(LIGHT_TREE) {
         states[path].normal = surface.facing;
     }
     let direction = normalized(to_world(basis, scatter.incoming));
-    let ground = cross_ground(surface.point, direction, surface.hit);
-    write_ray(path, surface.point, direction, surface.hit, bounds_before(ground, INFINITELY_FAR));
-    paths[path].w += BOUNCE_RAY;
-    go_on(path);
+    write_next_ray(path, &surface, direction, is_within(&surface));
 }

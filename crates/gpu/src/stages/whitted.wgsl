@@ -124,7 +124,9 @@ fn write_shadows(path: u32, surface: ptr<function, Surface>, bsdf: ptr<function,
         if !sample.known {
             return false;
         }
-        write_shadow_ray(path, slot, surface, sample.direction, light, sample.t, sample.goal);
+        if !hides_itself(surface, sample.direction, sample.t) {
+            write_shadow_ray(path, slot, surface, sample.direction, light, sample.t, sample.goal);
+        }
     }
     return true;
 }
@@ -147,12 +149,8 @@ fn whitted_bounce(path: u32, surface: ptr<function, Surface>, bsdf: ptr<function
         return;
     }
     states[path].throughput = quotients(throughput, survival);
-    states[path].inside = 0u;
     let direction = normalized_unfused(to_world(basis, scatter.incoming));
-    let ground = cross_ground((*surface).point, direction, (*surface).hit);
-    write_ray(path, (*surface).point, direction, (*surface).hit, bounds_before(ground, INFINITELY_FAR));
-    paths[path].w += BOUNCE_RAY;
-    go_on(path);
+    write_next_ray(path, surface, direction, is_within(surface));
 }
 
 @compute @workgroup_size(64)
@@ -183,8 +181,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         kind = material_kind(material_at(surface.hit));
     }
     let cut = params.bounce == job.depth;
-    let followed = surface.known && (!surface.inside || kind == DIELECTRIC);
-    if !followed || (!cut && lights_set(params.bounce) >= SETS) {
+    if !surface.known || (!cut && lights_set(params.bounce) >= SETS) {
         paths[path].w |= 1u;
         return;
     }
@@ -200,10 +197,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         }
         if !scatter_glass(path, &surface, draw4(sequences[path], choices(params.bounce)).z) {
             paths[path].w |= 1u;
-            return;
         }
-        paths[path].w += BOUNCE_RAY;
-        go_on(path);
         return;
     }
     var bsdf = bsdf_at(surface.hit);
