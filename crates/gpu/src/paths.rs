@@ -19,6 +19,9 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::BufferUsages as Usage;
 
+/// Shadow rays of a path that are traced at once in Whitted ray tracing.
+const SHADOWS_AT_ONCE: usize = 8;
+
 /// Follows the paths of renders of one world, whose tree is on the device.
 #[derive(Debug)]
 pub struct Integrator {
@@ -235,7 +238,7 @@ impl JobPaths {
         queue: usize,
     ) -> Result<(), DeviceError> {
         let Columns { params, pixels, rays, found, sequences, states, paths, queues, .. } = columns;
-        let Self { numbers, sobol, offsets, appearance, materials, lights, sky, .. } = self;
+        let Self { numbers, sobol, offsets, lights, sky, .. } = self;
         let shadows = &columns.shadows;
         // Shadow rays are the paths' own where no others follow.
         let [shadow_rays, shadow_found] =
@@ -256,23 +259,20 @@ impl JobPaths {
                 buffers.extend([rays, found, queue]);
                 self.tree.queued_hits(false)
             }
-            Stage::Occlusion | Stage::Path | Stage::Whitted(_) => {
-                buffers.push(numbers);
-                buffers.extend(self.tree.spheres());
-                buffers.extend([appearance, materials, sobol, sequences, found, rays]);
-                if let Stage::Occlusion = stage {
-                    buffers.extend([&shadows.lights, paths, queue, &shadows.queue, sky]);
-                    Kernel::Occlusion
+            Stage::Occlusion => {
+                buffers.extend(self.surface_buffers(columns));
+                buffers.extend([&shadows.lights, paths, queue, &shadows.queue, sky]);
+                Kernel::Occlusion
+            }
+            Stage::Path | Stage::Whitted(_) => {
+                buffers.extend(self.surface_buffers(columns));
+                buffers.extend([states, paths, &shadows.rays, &shadows.lights]);
+                buffers.extend([queue, next, &shadows.queue, lights, &columns.interiors, sky]);
+                if let Stage::Whitted(step) = stage {
+                    buffers.push(pixels);
+                    Kernel::Whitted(step)
                 } else {
-                    buffers.extend([states, paths, &shadows.rays, &shadows.lights]);
-                    buffers.extend([queue, next, &shadows.queue, lights, &columns.interiors, sky]);
-                    match stage {
-                        Stage::Whitted(step) => {
-                            buffers.push(pixels);
-                            Kernel::Whitted(step)
-                        }
-                        _ => Kernel::Path,
-                    }
+                    Kernel::Path
                 }
             }
             Stage::ShadowHits => {
@@ -292,6 +292,15 @@ impl JobPaths {
             Some(again) => work.run(again, &buffers, size),
             None => Ok(()),
         }
+    }
+
+    /// Returns the buffers of kernels that find surfaces, in the order in which they bind them first.
+    fn surface_buffers<'a>(&'a self, columns: &'a Columns) -> Vec<&'a wgpu::Buffer> {
+        let mut buffers = vec![&self.numbers];
+        buffers.extend(self.tree.spheres());
+        buffers.extend([&self.appearance, &self.materials, &self.sobol]);
+        buffers.extend([&columns.sequences, &columns.found, &columns.rays]);
+        buffers
     }
 
     /// Runs the stages of all paths of a batch.
@@ -340,9 +349,7 @@ impl JobPaths {
             self.write_bounces(columns, &params);
         }
     }
-}
 
-impl JobPaths {
     /// Runs the stages of Whitted ray tracing, in which each surface has many shadow samples.
     fn follow_whitted(
         &self,
@@ -393,9 +400,6 @@ impl JobPaths {
         Ok(())
     }
 }
-
-/// Shadow rays of a path that are traced at once in Whitted ray tracing.
-const SHADOWS_AT_ONCE: usize = 8;
 
 /// Returns the shadow rays of a path at each bounce: a light sample, and suns and an emissive sphere that are mirrored.
 fn shadow_rays(job: &DeviceJob) -> usize {
