@@ -59,7 +59,7 @@ pub(crate) struct ShadowColumns {
     pub(crate) lights: wgpu::Buffer,
 }
 
-/// What the paths of a job need columns for.
+/// The needs of a job's paths that decide which columns they have.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Needs {
     /// Shadow rays of each path beside its own rays.

@@ -120,6 +120,19 @@ fn is_same(sphere: vec4<u32>, row: u32, known: u32) -> bool {
     return known == row || (known < UNKNOWN - 1u && all(sphere_row(known) == sphere));
 }
 
+// Takes note of a hit that is certain, in an interval of distances.
+fn keep_hit(search: ptr<function, Search>, row: u32, near: f32, far: f32) {
+    if far < (*search).far {
+        (*search).others = min((*search).others, (*search).near);
+        (*search).sphere = row;
+        (*search).near = near;
+        (*search).far = far;
+        (*search).t_far = min((*search).t_far, far);
+    } else {
+        (*search).others = min((*search).others, near);
+    }
+}
+
 // Permutes the bits of slots so that they are in the order in which a ray of an octant meets them, or back.
 fn in_order_of(octant: u32, slots: u32) -> u32 {
     var mask = slots;

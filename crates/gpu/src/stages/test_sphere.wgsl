@@ -61,13 +61,9 @@ fn test_sphere(ray: ptr<function, Ray>, search: ptr<function, Search>, row: u32)
     if near > (*search).t_far {
         return;
     }
-    if certain && far < (*search).far {
-        (*search).others = min((*search).others, (*search).near);
-        (*search).sphere = row;
-        (*search).near = near;
-        (*search).far = far;
-        (*search).t_far = min((*search).t_far, far);
+    if certain {
+        keep_hit(search, row, near, far);
     } else {
-        (*search).others = min((*search).others, select(max(enter_low, 0.0), near, certain));
+        (*search).others = min((*search).others, max(enter_low, 0.0));
     }
 }

@@ -64,13 +64,5 @@ fn test_sphere(ray: ptr<function, Ray>, search: ptr<function, Search>, row: u32)
     if near > (*search).t_far {
         return;
     }
-    if far < (*search).far {
-        (*search).others = min((*search).others, (*search).near);
-        (*search).sphere = row;
-        (*search).near = near;
-        (*search).far = far;
-        (*search).t_far = min((*search).t_far, far);
-    } else {
-        (*search).others = min((*search).others, near);
-    }
+    keep_hit(search, row, near, far);
 }

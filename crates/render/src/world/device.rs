@@ -148,13 +148,13 @@ pub struct DeviceLights {
     pub suns: Vec<DeviceSun>,
     /// Number of parts of the sky's picture that are sampled.
     pub sky_parts: usize,
-    /// How one of them is chosen.
+    /// The choice of one of them.
     pub choice: DeviceLightChoice,
     /// Distance from its center, in radii, within which an emissive sphere is close.
     pub reach: f64,
 }
 
-/// How a light is chosen.
+/// The choice of a light.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum DeviceLightChoice {
     /// None is luminous.
@@ -244,7 +244,7 @@ pub struct DevicePicture {
     pub scale: f32,
     /// Its axes.
     pub axes: Basis,
-    /// Of each row of patches between pixel centers the sines at its ends, and the reciprocal of a patch's area.
+    /// Rows of patches between pixel centers: the sines at the ends of each, and the reciprocal of a patch's area.
     pub rows: Vec<[f32; 3]>,
     /// The parts that are lights of their own.
     pub parts: Vec<DeviceSkyPart>,
