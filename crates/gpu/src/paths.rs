@@ -404,10 +404,10 @@ impl JobPaths {
 /// Returns the shadow rays of a path at each bounce: a light sample, and suns and an emissive sphere that are mirrored.
 fn shadow_rays(job: &DeviceJob) -> usize {
     match job.integration {
-        DeviceIntegration::Paths { .. } if job.lights.choice == DeviceLightChoice::None => 0,
         DeviceIntegration::Paths { mirrored_light: true, .. } => {
             1 + job.lights.suns.len() + job.lights.emitters.len().min(1)
         }
+        DeviceIntegration::Paths { .. } if job.lights.choice == DeviceLightChoice::None => 0,
         DeviceIntegration::Paths { .. } => 1,
         DeviceIntegration::Whitted { .. } => job::shadow_samples(job).min(SHADOWS_AT_ONCE),
         DeviceIntegration::Occlusion { .. } => 0,

@@ -91,13 +91,15 @@ impl Kernel {
         const PARAMS: &str = include_str!("stages/params.wgsl");
         const SPHERES: &str = include_str!("stages/spheres.wgsl");
         const RAYS: &str = include_str!("stages/rays.wgsl");
+        const SPHERE_TERMS: &str = include_str!("stages/sphere_terms.wgsl");
         const PATH_STATE: &str = include_str!("stages/path_state.wgsl");
         const QUEUE: &str = include_str!("stages/queue.wgsl");
         const SHADOW_RAYS: &str = include_str!("stages/shadow_rays.wgsl");
         // What paths need of a job, its arithmetic and its samples.
-        const JOB: [&str; 7] = [
+        const JOB: [&str; 8] = [
             PARAMS,
             include_str!("stages/arithmetic.wgsl"),
+            SPHERE_TERMS,
             include_str!("stages/job.wgsl"),
             include_str!("stages/hash.wgsl"),
             include_str!("stages/sobol.wgsl"),
@@ -158,7 +160,7 @@ impl Kernel {
                 let arithmetic = include_str!("stages/arithmetic.wgsl");
                 let test = include_str!("stages/test_sphere_again.wgsl");
                 let hits = include_str!("hits.wgsl");
-                ("hits again", vec![PARAMS, arithmetic, rows, SPHERES, hits, test])
+                ("hits again", vec![PARAMS, arithmetic, SPHERE_TERMS, rows, SPHERES, hits, test])
             }
             Self::Doubles => {
                 let arithmetic = include_str!("stages/arithmetic.wgsl");

@@ -16,8 +16,7 @@ fn cross_ground(origin: vec3<f32>, direction: vec3<f32>, own: u32) -> Crossing {
     let start = vec3<f64>(origin);
     let above = kept(dot_unfused(normal, start) - job.ground_height);
     let descent = -dot_unfused(normal, vec3<f64>(direction));
-    let span = kept(kept(abs(start.x) + abs(start.y)) + abs(start.z));
-    let origin_error = kept(span * select(0x1p-23lf, 0.0lf, own == MISS));
+    let origin_error = select(rounding_of(start), 0.0lf, own == MISS);
     let apart = origin_error < abs(above);
     if descent == 0.0 {
         return Crossing(false, 0.0);

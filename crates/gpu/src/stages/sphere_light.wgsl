@@ -46,23 +46,14 @@ fn sphere_ahead(point: vec3<f32>, direction: vec3<f32>, sphere: u32) -> Ahead {
     let center = vec3<f64>(bitcast<vec3<f32>>(bits.xyz));
     let radius = f64(bitcast<f32>(bits.w));
     let origin = vec3<f64>(point);
-    let toward = vec3<f64>(direction);
-    let found = sphere_distance(origin, toward, center, radius);
-    // Points of surfaces are rounded.
-    let error = kept(kept(kept(abs(origin.x) + abs(origin.y)) + abs(origin.z)) * 0x1p-23lf);
-    let apart = kept(error * kept(kept(2.0lf * radius) + error)) < abs(found.outside);
+    let terms = sphere_terms(origin, vec3<f64>(direction), center, radius);
+    let apart = is_apart(terms, radius, rounding_of(origin));
+    let found = sphere_distance(terms);
     if found.clear {
         return Ahead(apart, true, found.t);
     }
-    let offset = kept3(center - origin);
-    let along = dot_unfused(offset, toward) / dot_unfused(toward, toward);
-    let across = kept3(offset - kept3(toward * along));
-    let p2 = dot_unfused(across, across);
-    let distance2 = dot_unfused(offset, offset);
-    let r2 = kept(radius * radius);
-    // Far more than rounding.
-    let passes = p2 > kept(r2 * (1.0lf + 0x1p-20lf)) && p2 > kept(distance2 * 0x1p-60lf);
-    let behind = found.outside > kept(distance2 * 0x1p-28lf) && along < 0.0lf && kept(along * along) > kept(distance2 * 0x1p-60lf);
+    let passes = is_chord_clear(terms) && terms.chord2 < 0.0;
+    let behind = terms.outside > 0.0 && terms.b < -error_of_b(terms);
     return Ahead(apart && (passes || behind), false, 0.0lf);
 }
 

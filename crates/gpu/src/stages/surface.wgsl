@@ -1,5 +1,4 @@
-// Points and normals of hits: `integrator/surface.rs`, and distances as `intersect/terms.rs` of spherule-core computes
-// them.
+// Points and normals of hits: `integrator/surface.rs`.
 
 struct Surface {
     // False where the device does not know the processor's numbers.
@@ -16,38 +15,22 @@ struct Surface {
     radius: f64,
 }
 
-// As in `intersect/terms.rs`.
-const PART: f64 = 0x1p-28lf;
-const PART_TWICE: f64 = 0x1p-27lf;
-const PART_SQUARED: f64 = 0x1p-56lf;
-
+// A distance that rounding does not decide.
 struct Distance {
-    // True if rounding decides nothing.
     clear: bool,
     t: f64,
-    // Squared distance of the origin from the surface, in a measure: less than 0 inside.
-    outside: f64,
 }
 
-fn sphere_distance(origin: vec3<f64>, direction: vec3<f64>, center: vec3<f64>, radius: f64) -> Distance {
-    let from_center = kept3(origin - center);
-    let distance2 = dot_unfused(from_center, from_center);
-    let a = dot_unfused(direction, direction);
-    let b = -dot_unfused(from_center, direction);
-    let perpendicular = kept3(from_center + kept3(direction * (b / a)));
-    let p2 = dot_unfused(perpendicular, perpendicular);
-    let r2 = kept(radius * radius);
-    let chord2 = kept(r2 - p2);
-    let outside = kept(distance2 - r2);
-    let meets = kept(PART_TWICE * r2) < chord2
-        && kept(kept(PART_SQUARED * distance2) * r2) < kept(chord2 * chord2)
-        && kept(PART * kept(distance2 + r2)) < abs(outside);
-    if !meets || (outside > 0.0 && b <= 0.0) {
-        return Distance(false, 0.0, outside);
+// The distance to the hit of a ray that meets a sphere: `confirm_either` of spherule-core.
+fn sphere_distance(terms: SphereTerms) -> Distance {
+    let chord2 = terms.chord2;
+    let meets = kept(PART_TWICE * terms.r2) < chord2
+        && kept(kept(PART_SQUARED * terms.distance2) * terms.r2) < kept(chord2 * chord2)
+        && is_side_clear(terms);
+    if !meets || (terms.outside > 0.0 && terms.b <= 0.0) {
+        return Distance(false, 0.0);
     }
-    let far = outside < 0.0 && b >= 0.0;
-    let sum = abs(b) + sqrt(kept(a * chord2));
-    return Distance(true, select(abs(outside), sum, far) / select(sum, a, far), outside);
+    return Distance(true, distance_of(terms));
 }
 
 // Whether a ray is inside of the glass sphere on which it starts, and the normal where it entered.
@@ -112,7 +95,7 @@ fn surface_of(row: u32, found: u32, entry: Entry) -> Surface {
         let sphere = sphere_row(found);
         let center = vec3<f64>(bitcast<vec3<f32>>(sphere.xyz));
         surface.radius = f64(bitcast<f32>(sphere.w));
-        let distance = sphere_distance(origin, direction, center, surface.radius);
+        let distance = sphere_distance(sphere_terms(origin, direction, center, surface.radius));
         // Rays inside of the sphere on which they start leave where their chord ends, which is the processor's.
         if !distance.clear || found == own {
             return surface;
