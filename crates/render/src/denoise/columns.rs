@@ -1,15 +1,24 @@
 //! Columns of a tile's pixels and of those around it, for the regression.
 
-use super::regression::{REGRESSORS, SQUARE};
+use super::box_sums::BoxSums;
+use super::observations::{COVERAGE, FEATURES, Observations, PITCH, WEIGHT};
+use super::regression::SQUARE;
 use super::similarity::{Pixels, Similarities};
-use super::tile::Input;
+use super::tile::{Input, TILE};
 use crate::film::Region;
-use crate::lanes::{Lanes, Mask};
+use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask, columns_of_points};
 use crate::layers::Features;
+use std::ops::Range;
 
 /// Columns and rows of pixels around a tile that its result depends on, and a few columns more, so that rows of lanes
 /// fit.
 pub(super) const MARGIN: [usize; 2] = [20, 17];
+
+/// Number of pixels in a row, margins included.
+pub(super) const STRIDE: usize = TILE[0] as usize + 2 * MARGIN[0];
+
+/// Index of a tile's first pixel.
+pub(super) const ORIGIN: usize = MARGIN[1] * STRIDE + MARGIN[0];
 
 /// Least albedo that radiance is divided by: darker surfaces reflect too little light for a ratio.
 const MIN_ALBEDO: f32 = 0.02;
@@ -21,28 +30,17 @@ const OUTLIERS: f32 = 16.0;
 /// Distance within which the deviation of neighbors is averaged.
 const DEVIATION_RADIUS: usize = 3;
 
-/// Observations that regressions are fitted to: of pixels, or of squares of pixels.
-#[derive(Debug, Default)]
-pub(super) struct Observations {
-    /// Normal and coverage.
-    pub(super) features: [Vec<f32>; REGRESSORS - 1],
-    /// Mean radiance over albedo.
-    pub(super) irradiance: [Vec<f32>; 3],
-    /// Reliability: 0 outside of the picture, 1 without noise.
-    pub(super) weight: Vec<f32>,
-}
-
 /// Pixels of a tile and its margins, row by row. Pixels outside of the picture have no weight.
 #[derive(Debug, Default)]
 pub(super) struct Columns {
-    /// Number of pixels in a row, margins included.
-    pub(super) stride: usize,
     pub(super) rows: usize,
     pub(super) pixels: Observations,
     /// Means over the squares of [`SQUARE`] pixels around each pixel, if there is any noise.
     pub(super) squares: Observations,
     /// Similarities of pixels to their neighbors, if there is any noise.
     pub(super) similarities: Similarities,
+    /// Reliability: 0 outside of the picture, 1 without noise.
+    pub(super) weight: Vec<f32>,
     /// The sphere at the pixel's center.
     pub(super) id: Vec<f32>,
     /// Mean albedo; 1 for the background, whose radiance is its color.
@@ -57,49 +55,38 @@ pub(super) struct Columns {
     inside: Vec<f32>,
     /// Sums of deviations and of pixels around each pixel.
     sums: [Vec<f32>; 2],
-    /// One column of the pixels' observations, times their weights.
-    products: Vec<f32>,
-    scratch: Vec<f32>,
+    boxes: BoxSums,
 }
 
 impl Columns {
-    /// Returns the index of a tile's first pixel.
-    pub(super) fn origin(&self) -> usize {
-        MARGIN[1] * self.stride + MARGIN[0]
-    }
-
-    /// Returns the index of the pixel this many columns and rows away.
-    #[inline(always)]
-    pub(super) fn neighbor(&self, at: usize, [x, y]: [isize; 2]) -> usize {
-        at.wrapping_add_signed(y * self.stride as isize + x)
-    }
-
     /// Returns whether there is any noise around the pixels from `at` on, one in each lane.
     #[inline(always)]
     pub(super) fn has_noise<L: Lanes>(&self, at: usize) -> bool {
         Lanes::lt(L::splat(0.0), L::load(&self.sums[0][at..])).bits() != 0
     }
 
-    /// Fills the columns with the pixels of a tile, at most `width` wide, and those around it.
-    pub(super) fn fill(&mut self, input: &Input, tile: Region, width: usize) {
-        (self.stride, self.rows) = (width + 2 * MARGIN[0], tile.height as usize + 2 * MARGIN[1]);
-        let count = self.stride * self.rows;
-        let Observations { features, irradiance, weight } = &mut self.pixels;
-        let columns = [&mut self.id, weight, &mut self.deviation, &mut self.inside];
-        let columns = columns.into_iter().chain(features).chain(&mut self.albedo);
-        let columns = columns.chain(irradiance).chain(&mut self.variance);
+    /// Fills the columns with the pixels of a tile and those around it.
+    pub(super) fn fill(&mut self, input: &Input, tile: Region) {
+        self.rows = tile.height as usize + 2 * MARGIN[1];
+        let columns = [&mut self.id, &mut self.deviation, &mut self.inside, &mut self.weight];
+        let columns = columns.into_iter().chain(&mut self.albedo).chain(&mut self.variance);
         for column in columns.chain(&mut self.mean) {
-            column.clear();
-            column.resize(count, 0.0);
+            column.resize(self.rows * STRIDE, 0.0);
         }
-        let (image_width, image_height) = (input.image.width as usize, input.image.height as usize);
-        let (left, top) = (tile.x as usize, tile.y as usize);
-        let columns = left.saturating_sub(MARGIN[0])..(left + width + MARGIN[0]).min(image_width);
-        let rows = top.saturating_sub(MARGIN[1])..(top + self.rows - MARGIN[1]).min(image_height);
-        for y in rows {
-            for x in columns.clone() {
-                let at = (y + MARGIN[1] - top) * self.stride + x + MARGIN[0] - left;
-                self.set(at, input, y * image_width + x);
+        self.pixels.values.resize(self.rows * PITCH, 0.0);
+        let (width, height) = (input.image.width as usize, input.image.height as usize);
+        // The picture in the coordinates of the columns.
+        let left = MARGIN[0] as isize - tile.x as isize;
+        let inside = |column: isize| (column - left).clamp(0, width as isize) as usize;
+        for row in 0..self.rows {
+            let y = (row + tile.y as usize).checked_sub(MARGIN[1]).filter(|&y| y < height);
+            for first in (0..STRIDE).step_by(MAX_LANES) {
+                let from = inside(first as isize);
+                let to = y.map_or(from, |_| inside((first + MAX_LANES) as isize));
+                let lane = (from as isize + left - first as isize) as usize;
+                let y = y.unwrap_or(0);
+                let gathered = gather(input, y * width + from..y * width + to, lane);
+                self.set::<F32x16>(row, first, &gathered);
             }
         }
         self.weigh();
@@ -109,44 +96,54 @@ impl Columns {
         }
     }
 
-    /// Sets pixel `at` to that of the picture.
-    fn set(&mut self, at: usize, input: &Input, pixel: usize) {
-        let features: &Features = &input.features[pixel];
-        let [x, y, z] = features.normal;
-        for (column, feature) in self.pixels.features.iter_mut().zip([x, y, z, features.coverage]) {
-            column[at] = feature;
+    /// Sets the pixels of a row from `first` on, one in each lane.
+    #[inline(always)]
+    fn set<L: Lanes>(&mut self, row: usize, first: usize, gathered: &Gathered) {
+        let at = row * STRIDE + first;
+        let load = |column: &[f32; MAX_LANES]| L::load(column);
+        let mut observed = self.pixels.row_mut(row).map(|column| &mut column[first..]);
+        for (feature, column) in gathered.features.iter().zip(&mut observed) {
+            load(feature).store(column);
         }
-        // Compared by its bits only.
-        self.id[at] = f32::from_bits(features.id);
-        let (mut irradiance, mut sum) = (0.0, 0.0);
-        for channel in 0..3 {
-            let albedo = (features.albedo[channel] + 1.0 - features.coverage).max(MIN_ALBEDO);
-            let variance = input.variance.pixels[pixel][channel] / (albedo * albedo);
-            self.albedo[channel][at] = albedo;
-            let light = input.image.pixels[pixel][channel] / albedo;
-            self.pixels.irradiance[channel][at] = light;
-            self.variance[channel][at] = variance;
-            irradiance += light;
-            sum += variance;
+        load(&gathered.id).store(&mut self.id[at..]);
+        load(&gathered.inside).store(&mut self.inside[at..]);
+        let coverage = load(&gathered.features[COVERAGE]);
+        let (mut mean, mut mean_variance) = (L::splat(0.0), L::splat(0.0));
+        for (channel, column) in observed.take(3).enumerate() {
+            let albedo = load(&gathered.albedo[channel]) + L::splat(1.0) - coverage;
+            let albedo = Lanes::max(albedo, L::splat(MIN_ALBEDO));
+            let light = load(&gathered.radiance[channel]) / albedo;
+            let variance = load(&gathered.variance[channel]) / (albedo * albedo);
+            mean = mean + light;
+            mean_variance = mean_variance + variance;
+            light.store(column);
+            albedo.store(&mut self.albedo[channel][at..]);
+            variance.store(&mut self.variance[channel][at..]);
         }
-        (self.mean[0][at], self.mean[1][at]) = (irradiance / 3.0, sum / 3.0);
-        self.deviation[at] = (sum / 3.0).sqrt();
-        self.inside[at] = 1.0;
+        let [mean, mean_variance] = [mean, mean_variance].map(|sum| sum / L::splat(3.0));
+        mean.store(&mut self.mean[0][at..]);
+        mean_variance.store(&mut self.mean[1][at..]);
+        mean_variance.sqrt().store(&mut self.deviation[at..]);
     }
 
     /// Computes the weights, by the deviation of each pixel beside that of its neighbors.
     fn weigh(&mut self) {
         let [deviation, count] = &mut self.sums;
         for (sums, values) in [(&mut *deviation, &self.deviation), (&mut *count, &self.inside)] {
-            box_sums(values, self.stride, DEVIATION_RADIUS, sums, &mut self.scratch);
+            self.boxes.add(values, STRIDE, DEVIATION_RADIUS, sums);
         }
         let around = deviation.iter().zip(count.iter());
         let pixels = self.inside.iter().zip(&self.deviation).zip(around);
-        let weights = &mut self.pixels.weight;
+        let weights = &mut self.weight;
         for (weight, ((&inside, &deviation), (&sum, &count))) in weights.iter_mut().zip(pixels) {
             let usual = sum / count.max(1.0);
             let usual = OUTLIERS * usual * usual + f32::MIN_POSITIVE;
             *weight = inside * usual / (usual + deviation * deviation);
+        }
+        for (row, weights) in weights.chunks_exact(STRIDE).enumerate() {
+            for column in self.pixels.row_mut(row).skip(WEIGHT) {
+                column.copy_from_slice(weights);
+            }
         }
     }
 
@@ -154,83 +151,92 @@ impl Columns {
     fn compare(&mut self) {
         let [mean, variance] = &self.mean;
         let inside = &self.inside;
-        self.similarities.measure(Pixels { stride: self.stride, mean, variance, inside });
+        self.similarities.measure(Pixels { stride: STRIDE, mean, variance, inside });
     }
 
     /// Computes the means over squares. The pixels of a square count by their weights, and the square has their mean weight.
     fn average(&mut self) {
-        let Self { pixels, squares, products, scratch, stride, .. } = self;
-        box_sums(&pixels.weight, *stride, SQUARE / 2, &mut squares.weight, scratch);
-        let columns = pixels.features.iter().chain(&pixels.irradiance);
-        let means = squares.features.iter_mut().chain(&mut squares.irradiance);
-        for (column, mean) in columns.zip(means) {
-            products.clear();
-            products
-                .extend(column.iter().zip(&pixels.weight).map(|(value, weight)| value * weight));
-            box_sums(products, *stride, SQUARE / 2, mean, scratch);
-            for (mean, weight) in mean.iter_mut().zip(&squares.weight) {
-                *mean /= weight.max(f32::MIN_POSITIVE);
+        let Self { pixels, squares, weight, boxes, .. } = self;
+        let multiply = |row: usize, products: &mut [f32]| {
+            let columns = products.chunks_exact_mut(STRIDE);
+            let weights = &weight[row * STRIDE..][..STRIDE];
+            for (products, values) in columns.zip(pixels.row(row)).take(WEIGHT) {
+                let factors = values.iter().zip(weights);
+                for (product, (value, weight)) in products.iter_mut().zip(factors) {
+                    *product = value * weight;
+                }
             }
-        }
-        squares.weight.iter_mut().for_each(|weight| *weight /= (SQUARE * SQUARE) as f32);
-    }
-}
-
-/// Computes the sums over squares of `2 radius + 1` pixels, of rows of `stride` pixels. Those nearer than `radius` to a
-/// side are undefined.
-pub(super) fn box_sums(
-    values: &[f32],
-    stride: usize,
-    radius: usize,
-    sums: &mut Vec<f32>,
-    scratch: &mut Vec<f32>,
-) {
-    add_shifted(values, radius, 1, scratch);
-    add_shifted(scratch, radius, stride, sums);
-}
-
-/// Number of sums that are computed at once: few enough that they stay in the first-level cache.
-const BLOCK: usize = 1024;
-
-/// Computes the sums of `2 radius + 1` values, each `step` apart. At the ends, where there are fewer, they are 0.
-fn add_shifted(values: &[f32], radius: usize, step: usize, sums: &mut Vec<f32>) {
-    let span = 2 * radius * step;
-    sums.resize(values.len(), 0.0);
-    let Some(count) = values.len().checked_sub(span) else {
-        sums.fill(0.0);
-        return;
-    };
-    let (before, rest) = sums.split_at_mut(radius * step);
-    let (inner, after) = rest.split_at_mut(count);
-    before.fill(0.0);
-    after.fill(0.0);
-    for (first, block) in (0..).step_by(BLOCK).zip(inner.chunks_mut(BLOCK)) {
-        block.copy_from_slice(&values[first..first + block.len()]);
-        for shift in 1..=2 * radius {
-            let shifted = &values[first + shift * step..];
-            block.iter_mut().zip(shifted).for_each(|(sum, value)| *sum += value);
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn box_sums_are_those_of_squares() {
-        let (stride, rows) = (90, 24);
-        let values: Vec<f32> = (0..stride * rows).map(|i| (i * i % 17) as f32).collect();
-        let (mut sums, mut scratch) = (Vec::new(), Vec::new());
-        for radius in [0, 1, 3] {
-            box_sums(&values, stride, radius, &mut sums, &mut scratch);
-            for (y, x) in
-                (radius..rows - radius).flat_map(|y| (radius..stride - radius).map(move |x| (y, x)))
-            {
-                let window = (y - radius..=y + radius)
-                    .flat_map(|v| values[v * stride + x - radius..=v * stride + x + radius].iter());
-                assert_eq!(sums[y * stride + x], window.sum::<f32>(), "{radius} {x} {y}");
+            products[WEIGHT * STRIDE..].copy_from_slice(weights);
+        };
+        let divide = |sums: &mut [f32]| {
+            let (sums, weights) = sums.split_at_mut(WEIGHT * STRIDE);
+            for sums in sums.chunks_exact_mut(STRIDE) {
+                for (sum, weight) in sums.iter_mut().zip(&*weights) {
+                    *sum /= weight.max(f32::MIN_POSITIVE);
+                }
             }
-        }
+            for weight in weights {
+                *weight /= (SQUARE * SQUARE) as f32;
+            }
+        };
+        squares.values.resize(pixels.values.len(), 0.0);
+        boxes.add_rows(multiply, PITCH, SQUARE / 2, &mut squares.values, divide);
     }
 }
+
+/// Pixels of the picture, one in each lane; those outside of it are 0.
+#[derive(Default)]
+struct Gathered {
+    /// Normal and coverage.
+    features: [[f32; MAX_LANES]; FEATURES],
+    albedo: [[f32; MAX_LANES]; 3],
+    radiance: [[f32; MAX_LANES]; 3],
+    variance: [[f32; MAX_LANES]; 3],
+    /// Compared by its bits only.
+    id: [f32; MAX_LANES],
+    inside: [f32; MAX_LANES],
+}
+
+/// Gathers pixels into lanes, from `lane` on.
+#[inline(always)]
+fn gather(input: &Input, pixels: Range<usize>, lane: usize) -> Gathered {
+    let mut gathered = Gathered::default();
+    let [radiance, variance] =
+        [input.image, input.variance].map(|image| &image.pixels[pixels.clone()]);
+    let features = &input.features[pixels];
+    let all = features.first_chunk::<MAX_LANES>();
+    if let (Some(features), Some(radiance), Some(variance)) =
+        (all, radiance.first_chunk(), variance.first_chunk())
+    {
+        gathered.radiance = columns_of_points(radiance).map(F32x16::to_array);
+        gathered.variance = columns_of_points(variance).map(F32x16::to_array);
+        for (lane, features) in features.iter().enumerate() {
+            gathered.set_features(lane, features);
+        }
+        return gathered;
+    }
+    let rows = features.iter().zip(radiance).zip(variance);
+    for (lane, ((features, radiance), variance)) in (lane..MAX_LANES).zip(rows) {
+        for channel in 0..3 {
+            gathered.radiance[channel][lane] = radiance[channel];
+            gathered.variance[channel][lane] = variance[channel];
+        }
+        gathered.set_features(lane, features);
+    }
+    gathered
+}
+
+impl Gathered {
+    #[inline(always)]
+    fn set_features(&mut self, lane: usize, features: &Features) {
+        for axis in 0..3 {
+            self.features[axis][lane] = features.normal[axis];
+            self.albedo[axis][lane] = features.albedo[axis];
+        }
+        self.features[COVERAGE][lane] = features.coverage;
+        self.id[lane] = f32::from_bits(features.id);
+        self.inside[lane] = 1.0;
+    }
+}
+
+const _: () = assert!(STRIDE.is_multiple_of(MAX_LANES));

@@ -39,9 +39,11 @@
 //! the denoised pixel `d`, so the expectation of `(d - a)(d - b)` is the squared error of `d`.
 //! [`crate::noise`] has the bound.
 
+mod box_sums;
 mod choose;
 mod columns;
 mod features;
+mod observations;
 mod regression;
 mod similarity;
 mod target;

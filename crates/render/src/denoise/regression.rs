@@ -1,10 +1,11 @@
 //! Weighted linear regression in square windows: a row of lanes is a row of pixels.
 
-use super::columns::{Columns, Observations};
+use super::columns::{Columns, STRIDE};
+use super::observations::{FEATURES, IRRADIANCE, Observations, Observed, PITCH, WEIGHT, index};
 use crate::lanes::Lanes;
 
 /// Number of regressors: a constant, the normal and the coverage.
-pub(super) const REGRESSORS: usize = 5;
+const REGRESSORS: usize = 1 + FEATURES;
 
 /// Radii of the windows of pixels.
 pub(super) const RADII: [usize; 2] = [1, 2];
@@ -67,8 +68,8 @@ pub(super) fn predict_by_squares<L: Lanes>(columns: &Columns, at: usize) -> Pred
     let (squares, one) = (&columns.squares, L::splat(1.0));
     let [Prediction { irradiance, leverage }] =
         fit::<1, { SQUARE as isize }, L>(columns, squares, |_, _| one, [SQUARES_RADIUS], at);
-    let own = L::load(&columns.pixels.weight[at..]);
-    let all = L::splat((SQUARE * SQUARE) as f32) * L::load(&squares.weight[at..]);
+    let own = L::load(&columns.weight[at..]);
+    let all = L::splat((SQUARE * SQUARE) as f32) * squares.at(index(at)).column(WEIGHT);
     let share = own / Lanes::max(all, L::splat(f32::MIN_POSITIVE));
     Prediction { irradiance, leverage: leverage * share }
 }
@@ -88,21 +89,25 @@ fn fit<const WINDOWS: usize, const STEP: isize, L: Lanes>(
     at: usize,
 ) -> [Prediction<L>; WINDOWS] {
     let zero = L::splat(0.0);
-    let middle = load(&columns.pixels.features, at);
+    let here = index(at);
+    let middle = columns.pixels.at(here).columns(0);
     let id = L::load(&columns.id[at..]);
     let mut products = [[zero; REGRESSORS]; REGRESSORS];
     let mut weights = [zero; LARGEST];
     let mut solutions = [[zero; REGRESSORS]; WINDOWS];
     let mut first = 0;
-    let neighbor = |[x, y]: [isize; 2]| columns.neighbor(at, [STEP * x, STEP * y]);
+    let neighbor = |first: usize, row: usize, [x, y]: [isize; 2]| {
+        first.wrapping_add_signed(STEP * (y * row as isize + x))
+    };
     for (radius, solution) in radii.iter().zip(&mut solutions) {
         let end = pixels(*radius);
-        let neighbors = weights.iter_mut().zip(&OFFSETS).enumerate().take(end).skip(first);
-        for (index, (weight, &offset)) in neighbors {
-            let neighbor = neighbor(offset);
-            let differences = differences(observations, &middle, neighbor);
+        let neighbors = weights[first..end].iter_mut().zip(&OFFSETS[first..end]);
+        for (index, (weight, &offset)) in (first..).zip(neighbors) {
+            let observed = observations.at(neighbor(here, PITCH, offset));
+            let neighbor = neighbor(at, STRIDE, offset);
+            let differences = differences(observed, &middle);
             let same = L::load(&columns.id[neighbor..]).has_bits_of(id);
-            let own = L::load(&observations.weight[neighbor..]);
+            let own = observed.column(WEIGHT);
             *weight = closeness(&differences, same) * similarity(index, neighbor) * own;
             add_products(&mut products, &differences, *weight);
         }
@@ -110,15 +115,16 @@ fn fit<const WINDOWS: usize, const STEP: isize, L: Lanes>(
         first = end;
     }
     let mut sums = [[zero; 3]; WINDOWS];
-    let inner = pixels(radii[0]);
-    // The last `end`.
-    let all = weights[..first].iter().zip(&OFFSETS);
-    let fitted = Fitted { observations, middle, solutions };
-    for (&weight, &offset) in all.clone().take(inner) {
-        fitted.apply::<0>(neighbor(offset), weight, &mut sums);
+    let fitted = Fitted { middle, solutions };
+    let observed = |offset| observations.at(neighbor(here, PITCH, offset));
+    // The last `end` is that of all.
+    let (inner, outer) = weights[..first].split_at(pixels(radii[0]));
+    let (near, far) = OFFSETS[..first].split_at(inner.len());
+    for (&weight, &offset) in inner.iter().zip(near) {
+        fitted.apply::<0>(observed(offset), weight, &mut sums);
     }
-    for (&weight, &offset) in all.skip(inner) {
-        fitted.apply::<1>(neighbor(offset), weight, &mut sums);
+    for (&weight, &offset) in outer.iter().zip(far) {
+        fitted.apply::<1>(observed(offset), weight, &mut sums);
     }
     let mut predictions = [Prediction { irradiance: [zero; 3], leverage: zero }; WINDOWS];
     for ((prediction, irradiance), solution) in
@@ -130,19 +136,23 @@ fn fit<const WINDOWS: usize, const STEP: isize, L: Lanes>(
 }
 
 /// Regressions of windows around the same pixels.
-struct Fitted<'a, const WINDOWS: usize, L> {
-    observations: &'a Observations,
-    middle: [L; REGRESSORS - 1],
+struct Fitted<const WINDOWS: usize, L> {
+    middle: [L; FEATURES],
     solutions: [[L; REGRESSORS]; WINDOWS],
 }
 
-impl<const WINDOWS: usize, L: Lanes> Fitted<'_, WINDOWS, L> {
+impl<const WINDOWS: usize, L: Lanes> Fitted<WINDOWS, L> {
     /// Adds the irradiance of a neighbor to the predictions of the windows from the `FIRST` on, times the neighbor's
     /// coefficients.
     #[inline(always)]
-    fn apply<const FIRST: usize>(&self, neighbor: usize, weight: L, sums: &mut [[L; 3]; WINDOWS]) {
-        let differences = differences(self.observations, &self.middle, neighbor);
-        let light: [L; 3] = load(&self.observations.irradiance, neighbor);
+    fn apply<const FIRST: usize>(
+        &self,
+        neighbor: Observed,
+        weight: L,
+        sums: &mut [[L; 3]; WINDOWS],
+    ) {
+        let differences = differences(neighbor, &self.middle);
+        let light: [L; 3] = neighbor.columns(IRRADIANCE);
         for (sums, solution) in sums.iter_mut().zip(&self.solutions).skip(FIRST) {
             let [constant, slopes @ ..] = solution;
             let mut coefficient = *constant;
@@ -175,12 +185,8 @@ pub(super) fn load<const N: usize, L: Lanes>(columns: &[Vec<f32>; N], at: usize)
 
 /// Returns the differences of a neighbor's features from those of the middle.
 #[inline(always)]
-fn differences<L: Lanes>(
-    observations: &Observations,
-    middle: &[L; REGRESSORS - 1],
-    neighbor: usize,
-) -> [L; REGRESSORS - 1] {
-    let mut differences: [L; REGRESSORS - 1] = load(&observations.features, neighbor);
+fn differences<L: Lanes>(neighbor: Observed, middle: &[L; FEATURES]) -> [L; FEATURES] {
+    let mut differences: [L; FEATURES] = neighbor.columns(0);
     for (difference, &middle) in differences.iter_mut().zip(middle) {
         *difference = *difference - middle;
     }
@@ -190,7 +196,7 @@ fn differences<L: Lanes>(
 /// Returns the factor of a neighbor's weight that falls with the distance of its features; `same` selects neighbors of the same
 /// sphere.
 #[inline(always)]
-fn closeness<L: Lanes>(differences: &[L; REGRESSORS - 1], same: L::Mask) -> L {
+fn closeness<L: Lanes>(differences: &[L; FEATURES], same: L::Mask) -> L {
     let one = L::splat(1.0);
     let mut closeness = one;
     for &difference in differences {
@@ -204,7 +210,7 @@ fn closeness<L: Lanes>(differences: &[L; REGRESSORS - 1], same: L::Mask) -> L {
 #[inline(always)]
 fn add_products<L: Lanes>(
     products: &mut [[L; REGRESSORS]; REGRESSORS],
-    differences: &[L; REGRESSORS - 1],
+    differences: &[L; FEATURES],
     weight: L,
 ) {
     products[0][0] = products[0][0] + weight;

@@ -5,7 +5,7 @@
 //! Morel, "A Non-Local Algorithm for Image Denoising", CVPR 2005; with the variance of each pixel as in Rousselle, Knaus
 //! and Zwicker, "Adaptive Rendering with Non-Local Means Filtering", TOG 2012).
 
-use super::columns::box_sums;
+use super::box_sums::BoxSums;
 use super::regression::{OFFSETS, RADII, pixels};
 use crate::lanes::Lanes;
 
@@ -33,8 +33,7 @@ const PAIRS: usize = NEIGHBORS / 2;
 pub(super) struct Similarities {
     /// For each pixel, that to the neighbor below or on the right; by pairs of opposite offsets.
     pairs: [Vec<f32>; PAIRS],
-    excess: Vec<f32>,
-    scratch: Vec<f32>,
+    boxes: BoxSums,
 }
 
 /// Columns of pixels that are compared.
@@ -89,11 +88,14 @@ impl Similarities {
         let forward = OFFSETS[..NEIGHBORS].iter().filter(|&&offset| is_forward(offset));
         for (similarity, &[x, y]) in self.pairs.iter_mut().zip(forward) {
             let shift = (y * pixels.stride as isize + x) as usize;
-            differences(pixels, shift, &mut self.excess);
-            box_sums(&self.excess, pixels.stride, PATCH_RADIUS, similarity, &mut self.scratch);
-            for sum in similarity.iter_mut() {
-                *sum = similarity_of(*sum);
-            }
+            similarity.resize(pixels.mean.len(), 0.0);
+            let compare = |row, excess: &mut [f32]| differences(pixels, row, shift, excess);
+            let finish = |sums: &mut [f32]| {
+                for sum in sums {
+                    *sum = similarity_of(*sum);
+                }
+            };
+            self.boxes.add_rows(compare, pixels.stride, PATCH_RADIUS, similarity, finish);
         }
     }
 
@@ -109,15 +111,15 @@ impl Similarities {
     }
 }
 
-/// Computes the squared differences of pixels from those that are `shift` pixels later, beyond that of noise: in variances
-/// of the difference, less 1. It is 0 where one of the two is outside of the picture.
-fn differences(pixels: Pixels, shift: usize, excess: &mut Vec<f32>) {
-    let Pixels { mean, variance, inside, .. } = pixels;
-    let count = mean.len() - shift.min(mean.len());
-    excess.resize(mean.len(), 0.0);
-    excess[count..].fill(0.0);
-    let columns = [mean, variance, inside].map(|column| (&column[..count], &column[shift..]));
-    let [means, variances, insides] = columns.map(|(own, later)| own.iter().zip(later));
+/// Computes the squared differences of a row's pixels from those that are `shift` pixels later, beyond that of noise: in
+/// variances of the difference, less 1. It is 0 where one of the two is outside of the picture.
+fn differences(pixels: Pixels, row: usize, shift: usize, excess: &mut [f32]) {
+    let Pixels { stride, mean, variance, inside } = pixels;
+    excess.fill(0.0);
+    let first = row * stride;
+    let columns = [mean, variance, inside];
+    let [means, variances, insides] =
+        columns.map(|column| column[first..].iter().zip(column.iter().skip(first + shift)));
     let rows = means.zip(variances).zip(insides);
     for (excess, ((mean, variance), inside)) in excess.iter_mut().zip(rows) {
         let difference = mean.0 - mean.1;

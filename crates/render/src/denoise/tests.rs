@@ -1,6 +1,7 @@
 use super::*;
-use crate::denoise::columns::Columns;
+use crate::denoise::columns::{Columns, ORIGIN, STRIDE};
 use crate::denoise::features::MissingFeatures;
+use crate::denoise::observations::WEIGHT;
 use crate::denoise::regression::{SQUARE, predict, predict_by_squares};
 use crate::lanes::{F32x16, Lanes, MAX_LANES};
 use crate::layers::{Features, Layer, layers};
@@ -119,7 +120,7 @@ fn columns_of(noise: f32) -> Columns {
         floor: mean_square(&image),
     };
     let mut columns = Columns::default();
-    columns.fill(&input, Region { x: 0, y: 0, width: 120, height: 64 }, 120);
+    columns.fill(&input, Region { x: 0, y: 0, width: 120, height: 64 });
     columns
 }
 
@@ -128,20 +129,18 @@ fn squares_are_means_of_their_pixels() {
     let columns = columns_of(0.3);
     // At a corner of the picture, on a surface, and across the edge of both.
     for (x, y) in [(0, 0), (20, 30), (75, 30)] {
-        let at = columns.origin() + y * columns.stride + x;
-        let around = (0..SQUARE * SQUARE).map(|i| {
-            let [x, y] = [i % SQUARE, i / SQUARE].map(|step| step as isize - 1);
-            columns.neighbor(at, [x, y])
-        });
-        let pixels = &columns.pixels;
-        let weight: f32 = around.clone().map(|i| pixels.weight[i]).sum();
-        let mean = |column: &[f32]| {
-            around.clone().map(|i| pixels.weight[i] * column[i]).sum::<f32>() / weight
-        };
-        let squares = &columns.squares;
-        assert!((squares.weight[at] - weight / 9.0).abs() < 1e-6);
-        assert!((squares.irradiance[0][at] - mean(&pixels.irradiance[0])).abs() < 1e-6);
-        assert!((squares.features[0][at] - mean(&pixels.features[0])).abs() < 1e-6);
+        let at = ORIGIN + y * STRIDE + x;
+        let around = (0..SQUARE * SQUARE)
+            .map(|i| at - SQUARE / 2 * (STRIDE + 1) + i / SQUARE * STRIDE + i % SQUARE);
+        let (pixels, squares) = (&columns.pixels, &columns.squares);
+        let weight: f32 = around.clone().map(|i| pixels.value(WEIGHT, i)).sum();
+        let count = (SQUARE * SQUARE) as f32;
+        assert!((squares.value(WEIGHT, at) - weight / count).abs() < 1e-6);
+        for column in 0..WEIGHT {
+            let product = |i| pixels.value(WEIGHT, i) * pixels.value(column, i);
+            let mean = around.clone().map(product).sum::<f32>() / weight;
+            assert!((squares.value(column, at) - mean).abs() < 1e-6, "{column}");
+        }
     }
 }
 
@@ -167,7 +166,7 @@ fn much_noise_is_averaged_over_squares() {
 fn lanes_do_not_change_predictions() {
     let columns = columns_of(0.3);
     for first in [0, 64, 96] {
-        let at = columns.origin() + 30 * columns.stride + first;
+        let at = ORIGIN + 30 * STRIDE + first;
         let wide = [&predict::<F32x16>(&columns, at)[..], &[predict_by_squares(&columns, at)]];
         for lane in 0..MAX_LANES {
             let [near, far] = predict::<f32>(&columns, at + lane);

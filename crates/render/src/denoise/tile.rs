@@ -1,12 +1,14 @@
 //! Denoising of a tile: predictions, their errors, and the choice among them.
 
-use super::columns::{Columns, MARGIN, box_sums};
+use super::box_sums::BoxSums;
+use super::columns::{Columns, MARGIN, ORIGIN, STRIDE};
+use super::observations::{IRRADIANCE, index};
 use super::regression::{
     Prediction, RADII, SQUARE, SQUARES_RADIUS, WINDOWS, load, pixels, predict, predict_by_squares,
 };
 use crate::film::Region;
 use crate::image::Image;
-use crate::lanes::{F32x16, Lanes, MAX_LANES};
+use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask};
 use crate::layers::Features;
 
 /// Size of a tile. Predictions are also needed for [`BORDER`] pixels around it, which together fill rows of lanes.
@@ -64,13 +66,11 @@ pub(super) struct Workspace {
     scale: Vec<f32>,
     /// For each choice, 1 where it is the best.
     best: [Vec<f32>; CHOICES],
-    /// Least sum of errors, handicaps included.
-    least: Vec<f32>,
     /// Sum of the errors of the best choice.
     chosen: Vec<f32>,
     /// Sum of the weights of errors.
     weights: Vec<f32>,
-    scratch: Vec<f32>,
+    boxes: BoxSums,
 }
 
 /// Returns the tiles of a picture.
@@ -86,7 +86,7 @@ pub(super) fn tiles(width: u32, height: u32) -> impl Iterator<Item = Region> {
 impl Workspace {
     /// Returns radiance and squared error of a tile's pixels, row by row.
     pub(super) fn denoise(&mut self, input: &Input, tile: Region) -> Vec<([f32; 3], f32)> {
-        self.columns.fill(input, tile, TILE[0] as usize);
+        self.columns.fill(input, tile);
         self.predict(input.floor * FLOOR, tile);
         self.choose();
         self.blend(input, tile)
@@ -94,16 +94,15 @@ impl Workspace {
 
     /// Computes predictions and errors of the tile's pixels and those around it.
     fn predict(&mut self, floor: f32, tile: Region) {
-        let count = self.columns.stride * self.columns.rows;
+        let count = STRIDE * self.columns.rows;
         let all = self.predictions.iter_mut().flatten().chain(&mut self.errors);
         for column in all.chain([&mut self.scale]) {
-            column.clear();
             column.resize(count, 0.0);
         }
-        let first = self.columns.origin() - BORDER * self.columns.stride - BORDER;
+        let first = ORIGIN - BORDER * STRIDE - BORDER;
         for row in 0..tile.height as usize + 2 * BORDER {
-            for column in (0..TILE[0] as usize + 2 * BORDER).step_by(MAX_LANES) {
-                self.predict_row::<F32x16>(floor, first + row * self.columns.stride + column);
+            for column in (0..tile.width as usize + 2 * BORDER).step_by(MAX_LANES) {
+                self.predict_row::<F32x16>(floor, first + row * STRIDE + column);
             }
         }
     }
@@ -112,8 +111,8 @@ impl Workspace {
     #[inline(always)]
     fn predict_row<L: Lanes>(&mut self, floor: f32, at: usize) {
         let columns = &self.columns;
-        let [albedo, irradiance]: [[L; 3]; 2] =
-            [load(&columns.albedo, at), load(&columns.pixels.irradiance, at)];
+        let albedo: [L; 3] = load(&columns.albedo, at);
+        let irradiance: [L; 3] = columns.pixels.at(index(at)).columns(IRRADIANCE);
         let variance: [L; 3] = load(&columns.variance, at);
         let predictions = if columns.has_noise::<L>(at) {
             let [near, wide] = predict::<L>(columns, at);
@@ -134,7 +133,7 @@ impl Workspace {
         scale = Lanes::max(scale, L::splat(f32::MIN_POSITIVE));
         scale.store(&mut self.scale[at..]);
         // Rare bright paths would keep themselves: their variance is not that of well-distributed samples.
-        let weight = L::load(&columns.pixels.weight[at..]) / scale;
+        let weight = L::load(&columns.weight[at..]) / scale;
         (weight * own).store(&mut self.errors[0][at..]);
         for (window, Prediction { irradiance: predicted, leverage }) in
             predictions.iter().enumerate()
@@ -154,90 +153,110 @@ impl Workspace {
 
     /// Finds the choice with the least error around each pixel.
     fn choose(&mut self) {
-        let stride = self.columns.stride;
         for (sums, errors) in self.sums.iter_mut().zip(&self.errors) {
-            box_sums(errors, stride, ERROR_RADIUS, sums, &mut self.scratch);
+            self.boxes.add(errors, STRIDE, ERROR_RADIUS, sums);
         }
-        let weight = &self.columns.pixels.weight;
-        box_sums(weight, stride, ERROR_RADIUS, &mut self.weights, &mut self.scratch);
-        let [own, ..] = &self.sums;
-        let handicapped = |(sum, own): (&f32, &f32), kept: f32| sum + CAUTION * kept * own;
-        self.least.clear();
-        self.least.resize(own.len(), f32::INFINITY);
-        for (sums, kept) in self.sums.iter().zip(KEPT) {
-            let sums = sums.iter().zip(own).map(|row| handicapped(row, kept));
-            self.least.iter_mut().zip(sums).for_each(|(least, sum)| *least = least.min(sum));
+        self.boxes.add(&self.columns.weight, STRIDE, ERROR_RADIUS, &mut self.weights);
+        let count = self.weights.len();
+        self.best.iter_mut().chain([&mut self.chosen]).for_each(|column| column.resize(count, 0.0));
+        for at in (0..count).step_by(MAX_LANES) {
+            self.choose_row::<F32x16>(at);
         }
-        let mut open = std::mem::take(&mut self.scratch);
-        open.clear();
-        open.resize(self.least.len(), 1.0);
-        self.chosen.clear();
-        self.chosen.resize(self.least.len(), 0.0);
-        for ((best, sums), kept) in self.best.iter_mut().zip(&self.sums).zip(KEPT) {
-            best.clear();
-            // The first of equals.
-            let rows = sums.iter().zip(own).zip(&self.least).zip(&mut open).zip(&mut self.chosen);
-            best.extend(rows.map(|(((row, least), open), chosen)| {
-                let best = if handicapped(row, kept) <= *least { *open } else { 0.0 };
-                *open -= best;
-                *chosen += best * row.0;
-                best
-            }));
+        for (shares, best) in self.sums.iter_mut().zip(&self.best) {
+            self.boxes.add(best, STRIDE, CHOICE_RADIUS, shares);
         }
-        self.scratch = open;
+    }
+
+    /// Finds that of the pixels from `at` on, one in each lane.
+    #[inline(always)]
+    fn choose_row<L: Lanes>(&mut self, at: usize) {
+        let sums: [L; CHOICES] = load(&self.sums, at);
+        let mut handicapped = sums;
+        let mut least = L::splat(f32::INFINITY);
+        for (sum, kept) in handicapped.iter_mut().zip(KEPT) {
+            *sum = *sum + L::splat(CAUTION * kept) * sums[0];
+            least = Lanes::min(*sum, least);
+        }
+        let (mut open, mut chosen) = (L::splat(1.0), L::splat(0.0));
+        // The first of equals.
+        for ((best, sum), handicapped) in self.best.iter_mut().zip(sums).zip(handicapped) {
+            let share = L::select(Lanes::le(handicapped, least), open, L::splat(0.0));
+            open = open - share;
+            chosen = chosen + share * sum;
+            share.store(&mut best[at..]);
+        }
+        chosen.store(&mut self.chosen[at..]);
     }
 
     /// Blends the choices of neighbors, so that they leave no edges.
-    fn blend(&mut self, input: &Input, tile: Region) -> Vec<([f32; 3], f32)> {
-        let Self { columns, sums, best, scratch, .. } = self;
-        let stride = columns.stride;
-        for (shares, best) in sums.iter_mut().zip(best.iter()) {
-            box_sums(best, stride, CHOICE_RADIUS, shares, scratch);
-        }
-        let all = (2 * CHOICE_RADIUS + 1).pow(2) as f32;
+    fn blend(&self, input: &Input, tile: Region) -> Vec<([f32; 3], f32)> {
         let mut pixels = Vec::with_capacity((tile.width * tile.height) as usize);
         for row in 0..tile.height as usize {
-            let first = columns.origin() + row * stride;
-            for at in first..first + tile.width as usize {
-                let pixel = (tile.y as usize + row) * input.image.width as usize
-                    + tile.x as usize
-                    + (at - first);
-                let outlier = if sums[0][at] > 0.0 {
-                    outlier_share(columns, &self.predictions[0], at)
-                } else {
-                    0.0
-                };
-                let radiance = std::array::from_fn(|channel| {
-                    if sums[0][at] == all && outlier == 0.0 {
-                        return input.image.pixels[pixel][channel];
-                    }
-                    let own = columns.pixels.irradiance[channel][at];
-                    let usual = self.predictions[0][channel][at].max(0.0);
-                    let own = sums[0][at] * outlier.mul_add(usual - own, own);
-                    let windows = sums[1..].iter().zip(&self.predictions);
-                    let mixed = windows.fold(own, |sum, (shares, prediction)| {
-                        sum + shares[at] * prediction[channel][at].max(0.0)
-                    });
-                    mixed / all * columns.albedo[channel][at]
-                });
-                let error = self.chosen[at] / (3.0 * self.weights[at]) * self.scale[at];
-                pixels.push((radiance, error.max(0.0)));
+            let first = (tile.y as usize + row) * input.image.width as usize + tile.x as usize;
+            let originals = &input.image.pixels[first..][..tile.width as usize];
+            let first = ORIGIN + row * STRIDE;
+            for (at, originals) in (first..).step_by(MAX_LANES).zip(originals.chunks(MAX_LANES)) {
+                let (blended, are_kept) = self.blend_row::<F32x16>(at);
+                let mut rows = [[0.0; MAX_LANES]; 4];
+                for (row, column) in rows.iter_mut().zip(blended) {
+                    column.store(row);
+                }
+                pixels.extend(originals.iter().enumerate().map(|(lane, original)| {
+                    let [red, green, blue, error] = rows.each_ref().map(|row| row[lane]);
+                    let is_kept = (are_kept >> lane) & 1 == 1;
+                    (if is_kept { *original } else { [red, green, blue] }, error)
+                }));
             }
         }
         pixels
     }
+
+    /// Returns radiance and squared error of the pixels from `at` on, one in each lane, and the bits of those that stay as
+    /// they are.
+    #[inline(always)]
+    fn blend_row<L: Lanes>(&self, at: usize) -> ([L; 4], u32) {
+        let columns = &self.columns;
+        let zero = L::splat(0.0);
+        let all = L::splat(((2 * CHOICE_RADIUS + 1) * (2 * CHOICE_RADIUS + 1)) as f32);
+        let shares: [L; CHOICES] = load(&self.sums, at);
+        let albedo: [L; 3] = load(&columns.albedo, at);
+        let irradiance: [L; 3] = columns.pixels.at(index(at)).columns(IRRADIANCE);
+        let usual: [L; 3] = load(&self.predictions[0], at);
+        let outlier = outlier_share(columns, usual, at);
+        let outlier = L::select(Lanes::lt(zero, shares[0]), outlier, zero);
+        let [error, chosen, weights] =
+            [&self.scale, &self.chosen, &self.weights].map(|column| L::load(&column[at..]));
+        let error = Lanes::max(chosen / (L::splat(3.0) * weights) * error, zero);
+        let mut blended = [error; 4];
+        for channel in 0..3 {
+            let own = irradiance[channel];
+            let usual = Lanes::max(usual[channel], zero);
+            let mut mixed = shares[0] * outlier.mul_add(usual - own, own);
+            for (share, prediction) in shares[1..].iter().zip(&self.predictions) {
+                mixed = mixed + *share * Lanes::max(L::load(&prediction[channel][at..]), zero);
+            }
+            blended[channel] = mixed / all * albedo[channel];
+        }
+        let are_kept = Lanes::le(all, shares[0]) & Lanes::le(outlier, zero);
+        (blended, are_kept.bits())
+    }
 }
 
-/// Returns the share that a prediction has in the value of a pixel that keeps its own otherwise: that of its difference
+/// Returns the share that a prediction has in the values of pixels that keep their own otherwise: that of its difference
 /// that its noise explains, if the pixel is less reliable than its neighbors. It vanishes as samples grow.
-fn outlier_share(columns: &Columns, prediction: &[Vec<f32>; 3], at: usize) -> f32 {
-    let (mut noise, mut change) = (0.0, f32::MIN_POSITIVE);
-    for (channel, prediction) in prediction.iter().enumerate() {
-        let squared = columns.albedo[channel][at].powi(2);
-        noise += squared * columns.variance[channel][at];
-        change += squared * (prediction[at] - columns.pixels.irradiance[channel][at]).powi(2);
+#[inline(always)]
+fn outlier_share<L: Lanes>(columns: &Columns, prediction: [L; 3], at: usize) -> L {
+    let (mut noise, mut change) = (L::splat(0.0), L::splat(f32::MIN_POSITIVE));
+    let [albedo, variance]: [[L; 3]; 2] = [load(&columns.albedo, at), load(&columns.variance, at)];
+    let irradiance: [L; 3] = columns.pixels.at(index(at)).columns(IRRADIANCE);
+    for channel in 0..3 {
+        let squared = albedo[channel] * albedo[channel];
+        let difference = prediction[channel] - irradiance[channel];
+        noise = noise + squared * variance[channel];
+        change = change + squared * (difference * difference);
     }
-    (1.0 - columns.pixels.weight[at]) * (OUTLIER_VARIANCES * noise / change).min(1.0)
+    let explained = Lanes::min(L::splat(OUTLIER_VARIANCES) * noise / change, L::splat(1.0));
+    (L::splat(1.0) - L::load(&columns.weight[at..])) * explained
 }
 
 const _: () = assert!((TILE[0] as usize + 2 * BORDER).is_multiple_of(MAX_LANES));
