@@ -33,13 +33,14 @@ const DEVIATION_RADIUS: usize = 3;
 /// Pixels of a tile and its margins, row by row. Pixels outside of the picture have no weight.
 #[derive(Debug, Default)]
 pub(super) struct Columns {
+    /// Number of rows, margins included.
     pub(super) rows: usize,
     pub(super) pixels: Observations,
     /// Means over the squares of [`SQUARE`] pixels around each pixel, if there is any noise.
     pub(super) squares: Observations,
     /// Similarities of pixels to their neighbors, if there is any noise.
     pub(super) similarities: Similarities,
-    /// Reliability: 0 outside of the picture, 1 without noise.
+    /// Weight of each pixel, which its observations have, too.
     pub(super) weight: Vec<f32>,
     /// The sphere at the pixel's center.
     pub(super) id: Vec<f32>,
@@ -75,14 +76,14 @@ impl Columns {
         }
         self.pixels.values.resize(self.rows * PITCH, 0.0);
         let (width, height) = (input.image.width as usize, input.image.height as usize);
-        // The picture in the coordinates of the columns.
+        // The column of the picture's first pixels, which may be left of all.
         let left = MARGIN[0] as isize - tile.x as isize;
-        let inside = |column: isize| (column - left).clamp(0, width as isize) as usize;
+        let pixel_of = |column: isize| (column - left).clamp(0, width as isize) as usize;
         for row in 0..self.rows {
             let y = (row + tile.y as usize).checked_sub(MARGIN[1]).filter(|&y| y < height);
             for first in (0..STRIDE).step_by(MAX_LANES) {
-                let from = inside(first as isize);
-                let to = y.map_or(from, |_| inside((first + MAX_LANES) as isize));
+                let from = pixel_of(first as isize);
+                let to = y.map_or(from, |_| pixel_of((first + MAX_LANES) as isize));
                 let lane = (from as isize + left - first as isize) as usize;
                 let y = y.unwrap_or(0);
                 let gathered = gather(input, y * width + from..y * width + to, lane);

@@ -9,9 +9,13 @@ pub(super) const FEATURES: usize = 4;
 /// Index of the coverage, after the axes of the normal.
 pub(super) const COVERAGE: usize = 3;
 
-/// Columns of observations: first the features, then the irradiance, then the weight.
+/// Index of the irradiance, which is mean radiance over albedo, by channel.
 pub(super) const IRRADIANCE: usize = FEATURES;
+
+/// Index of the weight: 0 outside of the picture, 1 without noise.
 pub(super) const WEIGHT: usize = IRRADIANCE + 3;
+
+/// Number of columns.
 const COLUMNS: usize = WEIGHT + 1;
 
 /// Number of values in a row of pixels.
