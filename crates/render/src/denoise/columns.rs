@@ -6,8 +6,7 @@ use super::regression::SQUARE;
 use super::similarity::{Pixels, Similarities};
 use super::tile::{Input, TILE};
 use crate::film::Region;
-use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask, columns_of_points};
-use crate::layers::Features;
+use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask};
 use std::ops::Range;
 
 /// Columns and rows of pixels around a tile that its result depends on, and a few columns more, so that rows of lanes
@@ -204,40 +203,19 @@ fn gather(input: &Input, pixels: Range<usize>, lane: usize) -> Gathered {
     let mut gathered = Gathered::default();
     let [radiance, variance] =
         [input.image, input.variance].map(|image| &image.pixels[pixels.clone()]);
-    let features = &input.features[pixels];
-    let all = features.first_chunk::<MAX_LANES>();
-    if let (Some(features), Some(radiance), Some(variance)) =
-        (all, radiance.first_chunk(), variance.first_chunk())
-    {
-        gathered.radiance = columns_of_points(radiance).map(F32x16::to_array);
-        gathered.variance = columns_of_points(variance).map(F32x16::to_array);
-        for (lane, features) in features.iter().enumerate() {
-            gathered.set_features(lane, features);
-        }
-        return gathered;
-    }
-    let rows = features.iter().zip(radiance).zip(variance);
+    let rows = input.features[pixels].iter().zip(radiance).zip(variance);
     for (lane, ((features, radiance), variance)) in (lane..MAX_LANES).zip(rows) {
-        for channel in 0..3 {
-            gathered.radiance[channel][lane] = radiance[channel];
-            gathered.variance[channel][lane] = variance[channel];
+        for axis in 0..3 {
+            gathered.features[axis][lane] = features.normal[axis];
+            gathered.albedo[axis][lane] = features.albedo[axis];
+            gathered.radiance[axis][lane] = radiance[axis];
+            gathered.variance[axis][lane] = variance[axis];
         }
-        gathered.set_features(lane, features);
+        gathered.features[COVERAGE][lane] = features.coverage;
+        gathered.id[lane] = f32::from_bits(features.id);
+        gathered.inside[lane] = 1.0;
     }
     gathered
-}
-
-impl Gathered {
-    #[inline(always)]
-    fn set_features(&mut self, lane: usize, features: &Features) {
-        for axis in 0..3 {
-            self.features[axis][lane] = features.normal[axis];
-            self.albedo[axis][lane] = features.albedo[axis];
-        }
-        self.features[COVERAGE][lane] = features.coverage;
-        self.id[lane] = f32::from_bits(features.id);
-        self.inside[lane] = 1.0;
-    }
 }
 
 const _: () = assert!(STRIDE.is_multiple_of(MAX_LANES));
