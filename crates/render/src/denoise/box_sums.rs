@@ -1,74 +1,74 @@
-//! Sums over the squares around each pixel of a tile: first along rows, then across those that are kept.
+//! Sums over the squares around the pixels of a tile: first along rows, then across those that are kept.
 
-/// Rows that sums are made from.
-#[derive(Debug, Default)]
-pub(super) struct BoxSums {
+use super::rows::{Row, Rows, STRIDE};
+
+/// Sums over squares of `EDGE` pixels, which is odd, of rows that are asked for from top to bottom.
+#[derive(Debug)]
+pub(super) struct BoxSums<const COLUMNS: usize, const EDGE: usize> {
     /// Values of a row.
-    values: Vec<f32>,
-    /// Sums along the last rows, as many as a square has.
-    kept: Vec<f32>,
+    values: Box<Row<COLUMNS>>,
+    /// Sums along the last rows.
+    along: Rows<COLUMNS, EDGE>,
+    /// The row after them.
+    next: usize,
 }
 
-impl BoxSums {
-    /// Computes the sums over squares of `2 radius + 1` pixels, of rows of `stride` pixels. They are 0 nearer than `radius`
-    /// to a side.
+impl<const COLUMNS: usize, const EDGE: usize> BoxSums<COLUMNS, EDGE> {
+    /// Distance from the middle of a square to its edge.
+    const RADIUS: usize = EDGE / 2;
+
+    /// Forgets all rows, for another tile.
+    pub(super) fn begin(&mut self) {
+        self.next = 0;
+    }
+
+    /// Computes the sums around the pixels of row `y`, which is not before that of the last call. `values` writes the rows
+    /// that are needed and not known. Sums are 0 nearer than the radius to the left and the right.
     pub(super) fn add(
         &mut self,
-        values: &[f32],
-        stride: usize,
-        radius: usize,
-        sums: &mut Vec<f32>,
+        y: usize,
+        mut values: impl FnMut(usize, &mut Row<COLUMNS>),
+        sums: &mut Row<COLUMNS>,
     ) {
-        sums.resize(values.len(), 0.0);
-        let copy =
-            |row: usize, out: &mut [f32]| out.copy_from_slice(&values[row * stride..][..stride]);
-        self.add_rows(copy, stride, radius, sums, |_| ());
-    }
-
-    /// Does the same with rows that `values` writes, and calls `finish` with each row of sums.
-    pub(super) fn add_rows(
-        &mut self,
-        mut values: impl FnMut(usize, &mut [f32]),
-        stride: usize,
-        radius: usize,
-        sums: &mut [f32],
-        mut finish: impl FnMut(&mut [f32]),
-    ) {
-        let window = 2 * radius + 1;
-        self.values.resize(stride, 0.0);
-        self.kept.resize(window * stride, 0.0);
-        let rows = sums.len() / stride;
-        for row in 0..rows {
+        let (first, end) = (y - Self::RADIUS, y + Self::RADIUS + 1);
+        for row in self.next.max(first)..end {
             values(row, &mut self.values);
-            let along = &mut self.kept[row % window * stride..][..stride];
-            add_shifted(&self.values, radius, along);
-            let Some(first) = row.checked_sub(2 * radius) else { continue };
-            let out = &mut sums[(first + radius) * stride..][..stride];
-            for (count, of) in (first..=row).enumerate() {
-                let along = &self.kept[of % window * stride..][..stride];
-                if count == 0 {
-                    out.copy_from_slice(along);
-                } else {
-                    out.iter_mut().zip(along).for_each(|(sum, value)| *sum += value);
-                }
+            for (along, values) in self.along.row_mut(row).iter_mut().zip(&*self.values) {
+                add_along::<EDGE>(values, along);
             }
-            finish(out);
         }
-        let side = radius.min(rows) * stride;
-        sums[..side].fill(0.0);
-        let end = sums.len() - side;
-        sums[end..].fill(0.0);
+        self.next = end;
+        let rows: [_; EDGE] = std::array::from_fn(|row| self.along.row(first + row));
+        for (column, sums) in sums.iter_mut().enumerate() {
+            for (x, sum) in sums.iter_mut().enumerate() {
+                let mut all = rows[0][column][x];
+                for row in &rows[1..] {
+                    all += row[column][x];
+                }
+                *sum = all;
+            }
+        }
     }
 }
 
-/// Computes the sums of `2 radius + 1` values around each. At the ends, where there are fewer, they are 0.
-fn add_shifted(values: &[f32], radius: usize, sums: &mut [f32]) {
-    sums.fill(0.0);
-    let Some(count) = values.len().checked_sub(2 * radius) else { return };
-    let inner = &mut sums[radius..][..count];
-    inner.copy_from_slice(&values[..count]);
-    for shift in 1..=2 * radius {
-        inner.iter_mut().zip(&values[shift..]).for_each(|(sum, value)| *sum += value);
+impl<const COLUMNS: usize, const EDGE: usize> Default for BoxSums<COLUMNS, EDGE> {
+    fn default() -> Self {
+        Self { values: Box::new([[0.0; STRIDE]; COLUMNS]), along: Rows::default(), next: 0 }
+    }
+}
+
+/// Computes the sums of `EDGE` values around each. At the ends, where there are fewer, they are 0.
+fn add_along<const EDGE: usize>(values: &[f32; STRIDE], sums: &mut [f32; STRIDE]) {
+    let (left, rest) = sums.split_at_mut(EDGE / 2);
+    let (inner, right) = rest.split_at_mut(STRIDE - (EDGE - 1));
+    left.fill(0.0);
+    right.fill(0.0);
+    for (x, sum) in inner.iter_mut().enumerate() {
+        let mut all = values[x];
+        for value in &values[x + 1..x + EDGE] {
+            all += value;
+        }
+        *sum = all;
     }
 }
 
@@ -78,19 +78,37 @@ mod tests {
 
     #[test]
     fn box_sums_are_those_of_squares() {
-        let (stride, rows) = (90, 24);
-        let values: Vec<f32> = (0..stride * rows).map(|i| (i * i % 17) as f32).collect();
-        let (mut sums, mut boxes) = (Vec::new(), BoxSums::default());
-        for radius in [0, 1, 3] {
-            boxes.add(&values, stride, radius, &mut sums);
-            for (y, x) in (0..rows).flat_map(|y| (0..stride).map(move |x| (y, x))) {
-                let inside =
-                    (radius..rows - radius).contains(&y) && (radius..stride - radius).contains(&x);
-                let window = (y.saturating_sub(radius)..=y + radius).flat_map(|v| {
-                    values[v * stride..].iter().take(x + radius + 1).skip(x.saturating_sub(radius))
-                });
-                let expected = if inside { window.sum::<f32>() } else { 0.0 };
-                assert_eq!(sums[y * stride + x], expected, "{radius} {x} {y}");
+        assert_sums_are_those_of_squares::<1>();
+        assert_sums_are_those_of_squares::<3>();
+        assert_sums_are_those_of_squares::<7>();
+    }
+
+    fn assert_sums_are_those_of_squares<const EDGE: usize>() {
+        const RADIUS: usize = 3;
+        let radius = EDGE / 2;
+        let value = |column: usize, x: usize, y: usize| {
+            let i = y * STRIDE + x + 5 * column;
+            (i * i % 17) as f32
+        };
+        let mut boxes = BoxSums::<2, EDGE>::default();
+        let mut sums = [[0.0; STRIDE]; 2];
+        // Two rows in the middle are left out.
+        for y in [RADIUS, RADIUS + 1, RADIUS + 2, RADIUS + 5, RADIUS + 6] {
+            let mut write = |y: usize, row: &mut Row<2>| {
+                for (column, values) in row.iter_mut().enumerate() {
+                    for (x, out) in values.iter_mut().enumerate() {
+                        *out = value(column, x, y);
+                    }
+                }
+            };
+            boxes.add(y, &mut write, &mut sums);
+            for (column, x) in (0..2).flat_map(|column| (0..STRIDE).map(move |x| (column, x))) {
+                let window = (y - radius..=y + radius)
+                    .flat_map(|v| (x.saturating_sub(radius)..=x + radius).map(move |u| (u, v)));
+                let inside = (radius..STRIDE - radius).contains(&x);
+                let expected =
+                    if inside { window.map(|(u, v)| value(column, u, v)).sum() } else { 0.0_f32 };
+                assert_eq!(sums[column][x], expected, "{EDGE} {column} {x} {y}");
             }
         }
     }

@@ -45,6 +45,7 @@ mod columns;
 mod features;
 mod observations;
 mod regression;
+mod rows;
 mod similarity;
 mod target;
 mod tile;

@@ -1,9 +1,9 @@
-//! Observations that regressions are fitted to: of pixels, or of squares of pixels.
+//! Columns of pixels, and the observations among them that regressions are fitted to.
 
-use super::columns::STRIDE;
+use super::rows::{Row, STRIDE};
 use crate::lanes::{Lanes, MAX_LANES};
 
-/// Number of features: the normal and the coverage.
+/// Number of features, which are the first columns: the normal and the coverage.
 pub(super) const FEATURES: usize = 4;
 
 /// Index of the coverage, after the axes of the normal.
@@ -15,69 +15,59 @@ pub(super) const IRRADIANCE: usize = FEATURES;
 /// Index of the weight: 0 outside of the picture, 1 without noise.
 pub(super) const WEIGHT: usize = IRRADIANCE + 3;
 
-/// Number of columns.
-const COLUMNS: usize = WEIGHT + 1;
+/// Index of the sphere at the pixel's center, which is compared by its bits only.
+pub(super) const ID: usize = WEIGHT + 1;
 
-/// Number of values in a row of pixels.
-pub(super) const PITCH: usize = COLUMNS * STRIDE;
+/// Number of the columns above: those of an observation, which squares of pixels have, too.
+pub(super) const OBSERVED: usize = ID + 1;
+
+/// Index of the mean albedo, by channel; 1 for the background, whose radiance is its color.
+pub(super) const ALBEDO: usize = OBSERVED;
+
+/// Index of the variance of the irradiance, by channel.
+pub(super) const VARIANCE: usize = ALBEDO + 3;
+
+/// Indices of the means over channels of irradiance and of its variance.
+pub(super) const MEAN: usize = VARIANCE + 3;
+pub(super) const MEAN_VARIANCE: usize = MEAN + 1;
+
+/// Index of the standard deviation over channels.
+pub(super) const DEVIATION: usize = MEAN_VARIANCE + 1;
+
+/// Index of the number of pixels: 1 inside of the picture, and 0 outside.
+pub(super) const INSIDE: usize = DEVIATION + 1;
+
+/// Index of the sum of deviations around the pixel.
+pub(super) const DEVIATIONS: usize = INSIDE + 1;
+
+/// Number of columns of pixels.
+pub(super) const COLUMNS: usize = DEVIATIONS + 1;
 
 /// Number of values from the first of a row of lanes to the last of them.
-const SPAN: usize = WEIGHT * STRIDE + MAX_LANES;
+const SPAN: usize = ID * STRIDE + MAX_LANES;
 
-/// Observations of the pixels of a tile and its margins, or of the squares of pixels around them.
-///
-/// A row of pixels has its columns one after another, so that all of a pixel are found by one index, which is checked
-/// once.
-#[derive(Debug, Default)]
-pub(super) struct Observations {
-    pub(super) values: Vec<f32>,
-}
-
-/// Observations of some pixels of a row, one in each lane.
+/// Observations of some pixels of a row, one in each lane, or of the squares around them. All columns are found by one index,
+/// which is checked once.
 #[derive(Clone, Copy)]
 pub(super) struct Observed<'a>(&'a [f32; SPAN]);
 
-/// Returns the index of the first of the values of pixel `at`.
-#[inline(always)]
-pub(super) fn index(at: usize) -> usize {
-    at / STRIDE * PITCH + at % STRIDE
-}
-
-impl Observations {
-    /// Returns those of the pixels whose values begin at `index`, one in each lane.
+impl<'a> Observed<'a> {
+    /// Returns those of the pixels from `x` on.
     ///
     /// # Panics
-    /// They are not in the columns.
+    /// The row ends before.
     #[inline(always)]
-    pub(super) fn at(&self, index: usize) -> Observed<'_> {
-        Observed(self.values[index..].first_chunk().expect("rows hold all columns"))
+    pub(super) fn at<const COLUMNS: usize>(row: &'a Row<COLUMNS>, x: usize) -> Self {
+        Self(row.as_flattened()[x..].first_chunk().expect("rows hold all columns"))
     }
 
-    /// Returns the columns of a row of pixels.
-    pub(super) fn row(&self, row: usize) -> impl Iterator<Item = &[f32]> {
-        self.values[row * PITCH..][..PITCH].chunks_exact(STRIDE)
-    }
-
-    /// Returns the same, to write to.
-    pub(super) fn row_mut(&mut self, row: usize) -> impl Iterator<Item = &mut [f32]> {
-        self.values[row * PITCH..][..PITCH].chunks_exact_mut(STRIDE)
-    }
-
-    /// Returns the value of pixel `at` in a column.
-    #[cfg(test)]
-    pub(super) fn value(&self, column: usize, at: usize) -> f32 {
-        self.values[index(at) + column * STRIDE]
-    }
-}
-
-impl Observed<'_> {
     /// Returns the values in columns from `first` on.
     #[inline(always)]
     pub(super) fn columns<const N: usize, L: Lanes>(self, first: usize) -> [L; N] {
         // A closure over the array would be called for each.
         let mut rows = [L::splat(0.0); N];
         for (column, row) in (first..).zip(&mut rows) {
-            *row = L::load(&self.0[column * STRIDE..]);
+            *row = self.column(column);
         }
         rows
     }
@@ -87,4 +77,18 @@ impl Observed<'_> {
     pub(super) fn column<L: Lanes>(self, column: usize) -> L {
         L::load(&self.0[column * STRIDE..])
     }
+}
+
+/// Returns the values of some columns, from `first` on, of the pixels from `x` on.
+#[inline(always)]
+pub(super) fn load<const N: usize, L: Lanes>(
+    row: &[[f32; STRIDE]],
+    first: usize,
+    x: usize,
+) -> [L; N] {
+    let mut rows = [L::splat(0.0); N];
+    for (row, column) in rows.iter_mut().zip(&row[first..]) {
+        *row = L::load(&column[x..]);
+    }
+    rows
 }

@@ -1,7 +1,7 @@
 //! Weighted linear regression in square windows: a row of lanes is a row of pixels.
 
-use super::columns::{Columns, STRIDE};
-use super::observations::{FEATURES, IRRADIANCE, Observations, Observed, PITCH, WEIGHT, index};
+use super::columns::Columns;
+use super::observations::{FEATURES, ID, IRRADIANCE, Observed, WEIGHT};
 use crate::lanes::Lanes;
 
 /// Number of regressors: a constant, the normal and the coverage.
@@ -13,6 +13,9 @@ pub(super) const RADII: [usize; 2] = [1, 2];
 /// Edge of the squares of pixels of which the widest window consists, and its radius in squares.
 pub(super) const SQUARE: usize = 3;
 pub(super) const SQUARES_RADIUS: usize = 3;
+
+/// Distance from a pixel to the middle of the outermost squares.
+pub(super) const REACH: usize = SQUARE * SQUARES_RADIUS;
 
 /// Number of windows: those of pixels, and the one of squares.
 pub(super) const WINDOWS: usize = RADII.len() + 1;
@@ -55,60 +58,71 @@ pub(super) static OFFSETS: [[isize; 2]; LARGEST] = {
     offsets
 };
 
-/// Fits the windows of pixels around the pixels from `at` on, one in each lane.
+/// Fits the windows of pixels around those of row `y` from `x` on, one in each lane.
 #[inline(always)]
-pub(super) fn predict<L: Lanes>(columns: &Columns, at: usize) -> [Prediction<L>; RADII.len()] {
-    let similarity = |index, neighbor| columns.similarities.load(index, at, neighbor);
-    fit::<{ RADII.len() }, 1, L>(columns, &columns.pixels, similarity, RADII, at)
+pub(super) fn predict<L: Lanes>(
+    columns: &Columns,
+    y: usize,
+    x: usize,
+) -> [Prediction<L>; RADII.len()] {
+    const RADIUS: usize = RADII[RADII.len() - 1];
+    let pixels: [_; 2 * RADIUS + 1] =
+        std::array::from_fn(|row| columns.pixels.row(y + row - RADIUS));
+    let similarities = columns.similarities.around(y);
+    let observed = |[dx, dy]: [isize; 2]| {
+        Observed::at(pixels[RADIUS.wrapping_add_signed(dy)], x.wrapping_add_signed(dx))
+    };
+    let similarity = |index, offset| similarities.load(index, x, offset);
+    fit(observed([0, 0]), observed, similarity, RADII)
 }
 
-/// Fits the window of squares, which must be known, around the pixels from `at` on, one in each lane.
+/// Fits the window of squares, which must be known, around the pixels of row `y` from `x` on, one in each lane.
 #[inline(always)]
-pub(super) fn predict_by_squares<L: Lanes>(columns: &Columns, at: usize) -> Prediction<L> {
-    let (squares, one) = (&columns.squares, L::splat(1.0));
-    let [Prediction { irradiance, leverage }] =
-        fit::<1, { SQUARE as isize }, L>(columns, squares, |_, _| one, [SQUARES_RADIUS], at);
-    let own = L::load(&columns.weight[at..]);
-    let all = L::splat((SQUARE * SQUARE) as f32) * squares.at(index(at)).column(WEIGHT);
+pub(super) fn predict_by_squares<L: Lanes>(columns: &Columns, y: usize, x: usize) -> Prediction<L> {
+    const RADIUS: usize = SQUARES_RADIUS;
+    let squares: [_; 2 * RADIUS + 1] =
+        std::array::from_fn(|row| columns.squares.row(y + row * SQUARE - REACH));
+    let observed = |[dx, dy]: [isize; 2]| {
+        let x = x.wrapping_add_signed(dx * SQUARE as isize);
+        Observed::at(squares[RADIUS.wrapping_add_signed(dy)], x)
+    };
+    let (middle, one) = (Observed::at(columns.pixels.row(y), x), L::splat(1.0));
+    let [Prediction { irradiance, leverage }] = fit(middle, observed, |_, _| one, [RADIUS]);
+    let own: L = middle.column(WEIGHT);
+    let all = L::splat((SQUARE * SQUARE) as f32) * observed([0, 0]).column(WEIGHT);
     let share = own / Lanes::max(all, L::splat(f32::MIN_POSITIVE));
     Prediction { irradiance, leverage: leverage * share }
 }
 
-/// Fits windows of ascending radii around the pixels from `at` on, one in each lane, to observations that are `STEP` pixels
-/// apart. Leverages are the derivatives by the observation in the middle. `similarity` returns that of a neighbor, by its
-/// index in [`OFFSETS`] and its place.
+/// Fits windows of ascending radii around some pixels, one in each lane. `observed` returns the observations at an offset,
+/// and `similarity` the similarity of a neighbor, by its index in [`OFFSETS`] and its offset. Leverages are the
+/// derivatives by the observation in the middle.
 ///
 /// The first pass over a window adds up its normal equations, which give the coefficient of each neighbor's irradiance;
 /// the second applies them. So the sums of a pass stay in registers.
 #[inline(always)]
-fn fit<const WINDOWS: usize, const STEP: isize, L: Lanes>(
-    columns: &Columns,
-    observations: &Observations,
-    similarity: impl Fn(usize, usize) -> L,
+fn fit<'a, const WINDOWS: usize, L: Lanes>(
+    middle: Observed,
+    observed: impl Fn([isize; 2]) -> Observed<'a>,
+    similarity: impl Fn(usize, [isize; 2]) -> L,
     radii: [usize; WINDOWS],
-    at: usize,
 ) -> [Prediction<L>; WINDOWS] {
     let zero = L::splat(0.0);
-    let here = index(at);
-    let middle = columns.pixels.at(here).columns(0);
-    let id = L::load(&columns.id[at..]);
+    let id = middle.column(ID);
+    let middle = middle.columns(0);
     let mut products = [[zero; REGRESSORS]; REGRESSORS];
     let mut weights = [zero; LARGEST];
     let mut solutions = [[zero; REGRESSORS]; WINDOWS];
     let mut first = 0;
-    let neighbor = |first: usize, row: usize, [x, y]: [isize; 2]| {
-        first.wrapping_add_signed(STEP * (y * row as isize + x))
-    };
     for (radius, solution) in radii.iter().zip(&mut solutions) {
         let end = pixels(*radius);
         let neighbors = weights[first..end].iter_mut().zip(&OFFSETS[first..end]);
         for (index, (weight, &offset)) in (first..).zip(neighbors) {
-            let observed = observations.at(neighbor(here, PITCH, offset));
-            let neighbor = neighbor(at, STRIDE, offset);
-            let differences = differences(observed, &middle);
-            let same = L::load(&columns.id[neighbor..]).has_bits_of(id);
-            let own = observed.column(WEIGHT);
-            *weight = closeness(&differences, same) * similarity(index, neighbor) * own;
+            let neighbor = observed(offset);
+            let differences = differences(neighbor, &middle);
+            let same = neighbor.column::<L>(ID).has_bits_of(id);
+            let own = neighbor.column(WEIGHT);
+            *weight = closeness(&differences, same) * similarity(index, offset) * own;
             add_products(&mut products, &differences, *weight);
         }
         *solution = solve(&products);
@@ -116,7 +130,6 @@ fn fit<const WINDOWS: usize, const STEP: isize, L: Lanes>(
     }
     let mut sums = [[zero; 3]; WINDOWS];
     let fitted = Fitted { middle, solutions };
-    let observed = |offset| observations.at(neighbor(here, PITCH, offset));
     // The last `end` is that of all.
     let (inner, outer) = weights[..first].split_at(pixels(radii[0]));
     let (near, far) = OFFSETS[..first].split_at(inner.len());
@@ -170,17 +183,6 @@ impl<const WINDOWS: usize, L: Lanes> Fitted<WINDOWS, L> {
 /// Returns the number of pixels of a window.
 pub(super) const fn pixels(radius: usize) -> usize {
     (2 * radius + 1).pow(2)
-}
-
-/// Returns the rows of lanes of some columns.
-#[inline(always)]
-pub(super) fn load<const N: usize, L: Lanes>(columns: &[Vec<f32>; N], at: usize) -> [L; N] {
-    // A closure over the array would be called for each.
-    let mut rows = [L::splat(0.0); N];
-    for (row, column) in rows.iter_mut().zip(columns) {
-        *row = L::load(&column[at..]);
-    }
-    rows
 }
 
 /// Returns the differences of a neighbor's features from those of the middle.

@@ -6,11 +6,14 @@
 //! and Zwicker, "Adaptive Rendering with Non-Local Means Filtering", TOG 2012).
 
 use super::box_sums::BoxSums;
+use super::columns::KEPT;
+use super::observations::{COLUMNS, INSIDE, MEAN, MEAN_VARIANCE};
 use super::regression::{OFFSETS, RADII, pixels};
+use super::rows::{Row, Rows, STRIDE};
 use crate::lanes::Lanes;
 
-/// Radius of the squares that are compared.
-const PATCH_RADIUS: usize = 2;
+/// Edge of the squares that are compared.
+const PATCH: usize = 5;
 
 /// Largest squared difference of two pixels that counts, in variances of the difference: rare paths of much light, whose
 /// variance is underestimated, do not decide alone.
@@ -28,26 +31,22 @@ const NEIGHBORS: usize = pixels(RADII[RADII.len() - 1]);
 /// Number of pairs of opposite offsets.
 const PAIRS: usize = NEIGHBORS / 2;
 
+/// Distance within which rows have neighbors.
+const RADIUS: usize = RADII[RADII.len() - 1];
+
 /// Similarities of the pixels of a tile, and its margins, to their neighbors, from 0 to 1.
 #[derive(Debug, Default)]
 pub(super) struct Similarities {
     /// For each pixel, that to the neighbor below or on the right; by pairs of opposite offsets.
-    pairs: [Vec<f32>; PAIRS],
-    boxes: BoxSums,
+    pairs: Rows<PAIRS, { RADIUS + 1 }>,
+    boxes: BoxSums<PAIRS, PATCH>,
+    /// The row after the last that is known.
+    next: usize,
 }
 
-/// Columns of pixels that are compared.
+/// Similarities of the pixels of a row to their neighbors.
 #[derive(Clone, Copy)]
-pub(super) struct Pixels<'a> {
-    /// Number of pixels in a row.
-    pub(super) stride: usize,
-    /// Irradiance, averaged over channels.
-    pub(super) mean: &'a [f32],
-    /// Variance of the irradiance, averaged over channels.
-    pub(super) variance: &'a [f32],
-    /// 1 inside of the picture, and 0 outside.
-    pub(super) inside: &'a [f32],
-}
+pub(super) struct Similar<'a>([&'a Row<PAIRS>; RADIUS + 1]);
 
 /// For each neighbor of [`OFFSETS`], the index of its pair, and the sign of its offset beside the pair's.
 static PAIR_OF: [(usize, bool); NEIGHBORS] = {
@@ -82,46 +81,72 @@ const fn is_forward([x, y]: [isize; 2]) -> bool {
     y > 0 || y == 0 && x > 0
 }
 
+/// Offsets of pairs.
+fn forward_offsets() -> impl Iterator<Item = [isize; 2]> {
+    OFFSETS[..NEIGHBORS].iter().copied().filter(|&offset| is_forward(offset))
+}
+
 impl Similarities {
-    /// Compares all pixels with their neighbors.
-    pub(super) fn measure(&mut self, pixels: Pixels) {
-        let forward = OFFSETS[..NEIGHBORS].iter().filter(|&&offset| is_forward(offset));
-        for (similarity, &[x, y]) in self.pairs.iter_mut().zip(forward) {
-            let shift = (y * pixels.stride as isize + x) as usize;
-            similarity.resize(pixels.mean.len(), 0.0);
-            let compare = |row, excess: &mut [f32]| differences(pixels, row, shift, excess);
-            let finish = |sums: &mut [f32]| {
-                for sum in sums {
-                    *sum = similarity_of(*sum);
-                }
-            };
-            self.boxes.add_rows(compare, pixels.stride, PATCH_RADIUS, similarity, finish);
-        }
+    /// Forgets all rows, for another tile.
+    pub(super) fn begin(&mut self) {
+        self.next = 0;
+        self.boxes.begin();
     }
 
-    /// Returns the similarities of the pixels from `at` on, one in each lane, to neighbor `index` of [`OFFSETS`], which is
-    /// at `neighbor`.
+    /// Compares the pixels of row `y` with their neighbors. Rows up to that of the last neighbor's square must be known.
+    pub(super) fn measure(&mut self, y: usize, pixels: &Rows<COLUMNS, KEPT>) {
+        for row in self.next.max(y - RADIUS)..=y {
+            let compare = |row: usize, excess: &mut Row<PAIRS>| {
+                for (excess, [dx, dy]) in excess.iter_mut().zip(forward_offsets()) {
+                    let other = pixels.row(row.wrapping_add_signed(dy));
+                    differences(pixels.row(row), other, dx, excess);
+                }
+            };
+            let sums = self.pairs.row_mut(row);
+            self.boxes.add(row, compare, sums);
+            for sum in sums.as_flattened_mut() {
+                *sum = similarity_of(*sum);
+            }
+        }
+        self.next = y + 1;
+    }
+
+    /// Returns those of row `y`, which must be the last that was measured.
     #[inline(always)]
-    pub(super) fn load<L: Lanes>(&self, index: usize, at: usize, neighbor: usize) -> L {
+    pub(super) fn around(&self, y: usize) -> Similar<'_> {
+        Similar(std::array::from_fn(|row| self.pairs.row(y + row - RADIUS)))
+    }
+}
+
+impl Similar<'_> {
+    /// Returns the similarities of the pixels from `x` on, one in each lane, to the neighbor at an offset, whose index in
+    /// [`OFFSETS`] this is.
+    #[inline(always)]
+    pub(super) fn load<L: Lanes>(self, index: usize, x: usize, [dx, dy]: [isize; 2]) -> L {
         if index == 0 {
             return L::splat(1.0);
         }
         let (pair, forward) = PAIR_OF[index];
-        L::load(&self.pairs[pair][if forward { at } else { neighbor }..])
+        let (row, x) = if forward {
+            (RADIUS, x)
+        } else {
+            (RADIUS.wrapping_add_signed(dy), x.wrapping_add_signed(dx))
+        };
+        L::load(&self.0[row][pair][x..])
     }
 }
 
-/// Computes the squared differences of a row's pixels from those that are `shift` pixels later, beyond that of noise: in
+/// Computes the squared differences of a row's pixels from those of another row `dx` pixels later, beyond that of noise: in
 /// variances of the difference, less 1. It is 0 where one of the two is outside of the picture.
-fn differences(pixels: Pixels, row: usize, shift: usize, excess: &mut [f32]) {
-    let Pixels { stride, mean, variance, inside } = pixels;
+fn differences(row: &Row<COLUMNS>, other: &Row<COLUMNS>, dx: isize, excess: &mut [f32; STRIDE]) {
     excess.fill(0.0);
-    let first = row * stride;
-    let columns = [mean, variance, inside];
+    // The first pixel of the row that has a partner, and the first that is one.
+    let [first, partner] = [-dx, dx].map(|first| first.max(0) as usize);
+    let columns = [MEAN, MEAN_VARIANCE, INSIDE];
     let [means, variances, insides] =
-        columns.map(|column| column[first..].iter().zip(column.iter().skip(first + shift)));
+        columns.map(|column| row[column][first..].iter().zip(&other[column][partner..]));
     let rows = means.zip(variances).zip(insides);
-    for (excess, ((mean, variance), inside)) in excess.iter_mut().zip(rows) {
+    for (excess, ((mean, variance), inside)) in excess[first..].iter_mut().zip(rows) {
         let difference = mean.0 - mean.1;
         let variance = (variance.0 + variance.1).max(f32::MIN_POSITIVE);
         let squared = (difference * difference / variance).min(MAX_DIFFERENCE);
@@ -132,7 +157,7 @@ fn differences(pixels: Pixels, row: usize, shift: usize, excess: &mut [f32]) {
 /// Returns the similarity by the sum of the excess over a square.
 #[inline(always)]
 fn similarity_of(sum: f32) -> f32 {
-    const SCALE: f32 = 1.0 / ((1 << SQUARINGS) as f32 * TOLERANCE * pixels(PATCH_RADIUS) as f32);
+    const SCALE: f32 = 1.0 / ((1 << SQUARINGS) as f32 * TOLERANCE * (PATCH * PATCH) as f32);
     let mut power = (1.0 - SCALE * sum.max(0.0)).max(0.0);
     for _ in 0..SQUARINGS {
         power *= power;
@@ -158,18 +183,20 @@ mod tests {
 
     #[test]
     fn pixels_on_the_two_sides_of_an_edge_are_not_similar() {
-        const SIDE: usize = 32;
-        let mean: Vec<f32> =
-            (0..SIDE * SIDE).map(|i| if i % SIDE < SIDE / 2 { 1.0 } else { 2.0 }).collect();
-        let mut similarities = Similarities::default();
-        let mut measure = |variance: f32, [x, y]: [isize; 2]| {
-            let (variance, inside) = ([variance; SIDE * SIDE], [1.0; SIDE * SIDE]);
-            let pixels = Pixels { stride: SIDE, mean: &mean, variance: &variance, inside: &inside };
-            similarities.measure(pixels);
-            let index = OFFSETS.iter().position(|&offset| offset == [x, y]).unwrap();
-            let at = SIDE * SIDE / 2 + SIDE / 2 - 1;
-            let neighbor = at.wrapping_add_signed(y * SIDE as isize + x);
-            similarities.load::<f32>(index, at, neighbor)
+        const Y: usize = 10;
+        let measure = |variance: f32, offset: [isize; 2]| {
+            let mut pixels = Rows::<COLUMNS, KEPT>::default();
+            for row in 0..KEPT {
+                let row = pixels.row_mut(row);
+                row[MEAN][..STRIDE / 2].fill(1.0);
+                row[MEAN][STRIDE / 2..].fill(2.0);
+                row[MEAN_VARIANCE].fill(variance);
+                row[INSIDE].fill(1.0);
+            }
+            let mut similarities = Similarities::default();
+            similarities.measure(Y, &pixels);
+            let index = OFFSETS.iter().position(|&other| offset == other).unwrap();
+            similarities.around(Y).load::<f32>(index, STRIDE / 2 - 1, offset)
         };
         for offset in [[1, 0], [2, 0], [1, -1], [2, 2]] {
             assert!(measure(1e-3, offset) < 0.4, "{offset:?}");
@@ -185,7 +212,7 @@ mod tests {
     fn similarity_falls_like_an_exponential_function() {
         for excess in [-1.0, 0.0, 0.5, 2.0, 6.0_f32] {
             let expected = (-excess.max(0.0) / TOLERANCE).exp();
-            let found = similarity_of(excess * pixels(PATCH_RADIUS) as f32);
+            let found = similarity_of(excess * (PATCH * PATCH) as f32);
             assert!((found - expected).abs() < 0.06, "{excess}: {found} {expected}");
         }
         assert!(similarity_of(f32::INFINITY) == 0.0);

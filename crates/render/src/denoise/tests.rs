@@ -1,8 +1,9 @@
 use super::*;
-use crate::denoise::columns::{Columns, ORIGIN, STRIDE};
+use crate::denoise::columns::Columns;
 use crate::denoise::features::MissingFeatures;
-use crate::denoise::observations::WEIGHT;
+use crate::denoise::observations::{ID, WEIGHT};
 use crate::denoise::regression::{SQUARE, predict, predict_by_squares};
+use crate::denoise::rows::MARGIN;
 use crate::lanes::{F32x16, Lanes, MAX_LANES};
 use crate::layers::{Features, Layer, layers};
 use crate::noise::CONFIDENCE;
@@ -110,8 +111,8 @@ fn rare_bright_pixels_leave_no_stain() {
     assert!(denoised.pixels.iter().all(|pixel| pixel.iter().all(|&x| x < 1.0)));
 }
 
-/// The columns of a tile of the picture with noise of this size.
-fn columns_of(noise: f32) -> Columns {
+/// The columns of a tile of the picture with noise of this size, as far as predictions of row `y` need them.
+fn columns_of(noise: f32, y: usize) -> Columns {
     let (image, statistics, layers) = picture(noise);
     let input = tile::Input {
         image: &image,
@@ -120,28 +121,65 @@ fn columns_of(noise: f32) -> Columns {
         floor: mean_square(&image),
     };
     let mut columns = Columns::default();
-    columns.fill(&input, Region { x: 0, y: 0, width: 120, height: 64 });
+    columns.begin();
+    for y in 0..=y {
+        columns.advance(&input, Region { x: 0, y: 0, width: 120, height: 64 }, MARGIN[1] + y);
+    }
     columns
 }
 
 #[test]
 fn squares_are_means_of_their_pixels() {
-    let columns = columns_of(0.3);
     // At a corner of the picture, on a surface, and across the edge of both.
     for (x, y) in [(0, 0), (20, 30), (75, 30)] {
-        let at = ORIGIN + y * STRIDE + x;
+        let columns = columns_of(0.3, y);
+        let (x, y) = (MARGIN[0] + x, MARGIN[1] + y);
+        let value = |column: usize, [x, y]: [usize; 2]| columns.pixels.row(y)[column][x];
         let around = (0..SQUARE * SQUARE)
-            .map(|i| at - SQUARE / 2 * (STRIDE + 1) + i / SQUARE * STRIDE + i % SQUARE);
-        let (pixels, squares) = (&columns.pixels, &columns.squares);
-        let weight: f32 = around.clone().map(|i| pixels.value(WEIGHT, i)).sum();
+            .map(|i| [x + i % SQUARE - SQUARE / 2, y + i / SQUARE - SQUARE / 2]);
+        let squares = columns.squares.row(y);
+        let weight: f32 = around.clone().map(|at| value(WEIGHT, at)).sum();
         let count = (SQUARE * SQUARE) as f32;
-        assert!((squares.value(WEIGHT, at) - weight / count).abs() < 1e-6);
-        for column in 0..WEIGHT {
-            let product = |i| pixels.value(WEIGHT, i) * pixels.value(column, i);
+        assert!((squares[WEIGHT][x] - weight / count).abs() < 1e-6);
+        for (column, squares) in squares.iter().enumerate().take(WEIGHT) {
+            let product = |at| value(WEIGHT, at) * value(column, at);
             let mean = around.clone().map(product).sum::<f32>() / weight;
-            assert!((squares.value(column, at) - mean).abs() < 1e-6, "{column}");
+            assert!((squares[x] - mean).abs() < 1e-6, "{column}");
         }
+        assert_eq!(squares[ID][x].to_bits(), value(ID, [x, y]).to_bits());
     }
+}
+
+#[test]
+fn rows_are_denoised_alike_after_rows_without_noise() {
+    // The picture with noise, a part without, and the picture again: all in a tile, or from the middle of that part on.
+    let (mut image, mut statistics, mut layers) = picture(0.3);
+    let count = image.pixels.len();
+    let repeat = |pixels: &mut Vec<[f32; 3]>, between: [f32; 3]| {
+        let noisy = pixels.clone();
+        pixels.resize(2 * count, between);
+        pixels.extend(noisy);
+    };
+    repeat(&mut image.pixels, [0.5; 3]);
+    repeat(&mut statistics.variance.pixels, [0.0; 3]);
+    let features = layers.pixels.clone();
+    layers.pixels.resize(2 * count, features[0]);
+    layers.pixels.extend(features);
+    let below = |pixels: &[[f32; 3]], rows| Image {
+        width: WIDTH,
+        height: rows,
+        pixels: pixels[pixels.len() - (rows * WIDTH) as usize..].to_vec(),
+    };
+    let denoised = |rows: u32| {
+        let (image, variance) =
+            (below(&image.pixels, rows), below(&statistics.variance.pixels, rows));
+        let features = &layers.pixels[3 * count - image.pixels.len()..];
+        let input = tile::Input { image: &image, variance: &variance, features, floor: 0.1 };
+        let region = Region { x: 0, y: 0, width: 120, height: rows };
+        let pixels = Workspace::default().denoise(&input, region);
+        pixels[pixels.len() - 120 * HEIGHT as usize..].to_vec()
+    };
+    assert!(denoised(3 * HEIGHT) == denoised(HEIGHT + HEIGHT / 2));
 }
 
 #[test]
@@ -164,13 +202,14 @@ fn much_noise_is_averaged_over_squares() {
 
 #[test]
 fn lanes_do_not_change_predictions() {
-    let columns = columns_of(0.3);
+    const Y: usize = 30;
+    let columns = columns_of(0.3, Y);
     for first in [0, 64, 96] {
-        let at = ORIGIN + 30 * STRIDE + first;
-        let wide = [&predict::<F32x16>(&columns, at)[..], &[predict_by_squares(&columns, at)]];
+        let (y, x) = (MARGIN[1] + Y, MARGIN[0] + first);
+        let wide = [&predict::<F32x16>(&columns, y, x)[..], &[predict_by_squares(&columns, y, x)]];
         for lane in 0..MAX_LANES {
-            let [near, far] = predict::<f32>(&columns, at + lane);
-            let one = [near, far, predict_by_squares(&columns, at + lane)];
+            let [near, far] = predict::<f32>(&columns, y, x + lane);
+            let one = [near, far, predict_by_squares(&columns, y, x + lane)];
             for (wide, one) in wide.concat().iter().zip(one) {
                 let mut row = [0.0; MAX_LANES];
                 Lanes::store(wide.leverage, &mut row);
