@@ -7,7 +7,7 @@ use spherule_render::world::DevicePixel;
 use wgpu::BufferUsages as Usage;
 
 /// Words of the head of a queue, as `queue.wgsl` describes it.
-const HEAD: usize = 4;
+const HEAD: usize = 5;
 
 /// Words of the sums of a pixel.
 const SUMS: usize = size_of::<DevicePixel>() / size_of::<u32>();
@@ -48,6 +48,7 @@ pub(crate) struct Columns {
     /// Numbers of bounces, of which each gets its own.
     pub(crate) bounces: wgpu::Buffer,
     pub(crate) shadows: ShadowColumns,
+    pub(crate) caustics: CausticColumns,
 }
 
 /// Columns of shadow rays.
@@ -59,6 +60,17 @@ pub(crate) struct ShadowColumns {
     pub(crate) lights: wgpu::Buffer,
 }
 
+/// Columns of caustic samples, whose shadow rays come after the others.
+pub(crate) struct CausticColumns {
+    /// Of each path the specular bounces since its last diffuse surface, and its first caustic sample.
+    pub(crate) chains: wgpu::Buffer,
+    /// Second segments of the samples, and the next sample of the path.
+    pub(crate) seconds: wgpu::Buffer,
+}
+
+/// Words of a path's chain of specular bounces.
+const CHAIN: usize = 16;
+
 /// The needs of a job's paths that decide which columns they have.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Needs {
@@ -66,6 +78,8 @@ pub(crate) struct Needs {
     pub(crate) shadows: usize,
     /// True if several glass spheres may contain a path.
     pub(crate) nested_glass: bool,
+    /// True if surfaces sample caustics; those of a bounce have room for one for each path.
+    pub(crate) caustics: bool,
 }
 
 impl Columns {
@@ -73,7 +87,7 @@ impl Columns {
     pub(crate) fn new(
         device: &Device,
         [pixels, paths]: [usize; 2],
-        Needs { shadows, nested_glass }: Needs,
+        Needs { shadows, nested_glass, caustics }: Needs,
     ) -> Result<Self, DeviceError> {
         let buffer = |what, words: usize, usage| {
             device.buffer(what, (size_of::<u32>() * words) as u64, usage)
@@ -87,6 +101,9 @@ impl Columns {
         let shadow = |what, words, rays: usize| {
             buffer(what, words * if rays > 0 { rays * paths } else { 1 }, Usage::STORAGE)
         };
+        let caustic =
+            |what, words| buffer(what, words * if caustics { paths } else { 1 }, Usage::STORAGE);
+        let shadows = shadows + usize::from(caustics);
         let read = Usage::MAP_READ | Usage::COPY_DST;
         let empty_head = buffer("head of a queue", HEAD, Usage::COPY_SRC | Usage::COPY_DST)?;
         device.write(&empty_head, bytemuck::bytes_of(&Self::head(0)));
@@ -120,6 +137,10 @@ impl Columns {
                 // Of ambient occlusion, too.
                 lights: shadow("light", 4, shadows.max(1))?,
             },
+            caustics: CausticColumns {
+                chains: caustic("specular bounces", CHAIN)?,
+                seconds: caustic("second segments", 12)?,
+            },
         })
     }
 
@@ -142,6 +163,6 @@ impl Columns {
 
     /// Returns the head of a queue with so many rows.
     pub(crate) fn head(rows: usize) -> [u32; HEAD] {
-        [groups(rows), 1, 1, rows as u32]
+        [groups(rows), 1, 1, rows as u32, 0]
     }
 }

@@ -33,6 +33,8 @@ pub(crate) struct JobNumbers {
     lights: LightNumbers,
     shadow_samples: u32,
     all_shadows: u32,
+    /// So that the size is a multiple of a double's.
+    padding: u32,
 }
 
 /// Bits of the flags, as in `job.wgsl`.
@@ -111,6 +113,7 @@ impl JobNumbers {
             lights,
             shadow_samples: own.shadow_samples,
             all_shadows: shadow_samples(job) as u32,
+            padding: 0,
         }
     }
 }

@@ -16,6 +16,7 @@
 
 #[cfg(test)]
 mod bounds;
+mod caustics;
 mod columns;
 mod device;
 mod error;

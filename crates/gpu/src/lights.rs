@@ -1,9 +1,10 @@
 //! Lights, as `lights.wgsl` has them.
 
+use crate::caustics;
 use crate::materials::words;
 use bytemuck::{Pod, Zeroable};
 use spherule_render::world::{
-    DeviceLightChoice, DeviceLightNode, DeviceLights, DevicePoint, DeviceSun,
+    DeviceCaustics, DeviceLightChoice, DeviceLightNode, DeviceLights, DevicePoint, DeviceSun,
 };
 
 /// A distance in radii that stands for an infinite one.
@@ -28,10 +29,15 @@ pub(crate) struct LightNumbers {
     last_rows: u32,
     /// Number of the root's children.
     top: u32,
+    /// Specular spheres and the emitters of caustics.
+    caster_rows: u32,
 }
 
 /// Returns the rows of all lights, of four words each, and their numbers.
-pub(crate) fn rows(lights: &DeviceLights) -> (Vec<[u32; 4]>, LightNumbers) {
+pub(crate) fn rows(
+    lights: &DeviceLights,
+    caustics: &DeviceCaustics,
+) -> (Vec<[u32; 4]>, LightNumbers) {
     let mut rows: Vec<[u32; 4]> = lights
         .emitters
         .iter()
@@ -74,6 +80,7 @@ pub(crate) fn rows(lights: &DeviceLights) -> (Vec<[u32; 4]>, LightNumbers) {
     };
     numbers.last_rows = rows.len() as u32;
     rows.extend(words(&last));
+    numbers.caster_rows = caustics::append(&mut rows, caustics);
     (rows, numbers)
 }
 
@@ -103,9 +110,15 @@ fn sun(sun: &DeviceSun) -> [[u32; 4]; 5] {
     ]
 }
 
-fn node(node: &DeviceLightNode) -> [[u32; 4]; 2] {
+/// Returns the last word of a node.
+pub(crate) fn family(parent: u32, children: u32) -> u32 {
+    parent << CHILDREN_BITS | children
+}
+
+/// Returns the rows of a node of a tree of lights.
+pub(crate) fn node(node: &DeviceLightNode) -> [[u32; 4]; 2] {
     let [x, y, z] = node.center.to_array().map(f32::to_bits);
-    let family = node.parent << CHILDREN_BITS | node.children;
+    let family = family(node.parent, node.children);
     [
         [x, y, z, node.radius.to_bits()],
         [node.power.to_bits(), node.steady.to_bits(), node.child, family],

@@ -151,7 +151,7 @@ impl JobPaths {
     fn new(integrator: &Integrator, job: &DeviceJob) -> Result<Self, DeviceError> {
         let device = integrator.tree.device();
         let filled = |what, bytes: &[u8]| device.filled(what, bytes);
-        let (lights, light_numbers) = lights::rows(&job.lights);
+        let (lights, light_numbers) = lights::rows(&job.lights, &job.caustics);
         Ok(Self {
             tree: Arc::clone(&integrator.tree),
             appearance: integrator.appearance.clone(),
@@ -161,6 +161,7 @@ impl JobPaths {
             needs: Needs {
                 shadows: shadow_rays(job),
                 nested_glass: job.world.features.nested_glass,
+                caustics: job.caustics.sampled,
             },
             numbers: filled("job", bytemuck::bytes_of(&JobNumbers::of(job, light_numbers)))?,
             lights: filled("lights", bytemuck::cast_slice(&lights))?,
@@ -216,6 +217,7 @@ impl JobPaths {
             first_sample: samples.start,
             samples: samples.len() as u32,
             shadows: self.needs.shadows.max(1) as u32,
+            caustics: self.needs.caustics.into(),
             ..self.tree.params(count)
         };
         self.write_bounces(columns, &params);
@@ -272,7 +274,8 @@ impl JobPaths {
                     buffers.push(pixels);
                     Kernel::Whitted(step)
                 } else {
-                    Kernel::Path
+                    buffers.extend([&columns.caustics.chains, &columns.caustics.seconds]);
+                    Kernel::Path { caustics: self.needs.caustics }
                 }
             }
             Stage::ShadowHits => {
@@ -282,8 +285,15 @@ impl JobPaths {
                 size = Size::Queue(&shadows.queue);
                 self.tree.queued_hits(true)
             }
+            Stage::SecondSegments => {
+                buffers.extend([numbers, shadow_rays, shadow_found, paths, queue]);
+                buffers.push(&shadows.queue);
+                buffers.extend([&columns.caustics.chains, &columns.caustics.seconds]);
+                Kernel::SecondSegments
+            }
             Stage::Shadows => {
                 buffers.extend([shadow_rays, &shadows.lights, shadow_found, paths, queue]);
+                buffers.extend([&columns.caustics.chains, &columns.caustics.seconds]);
                 Kernel::Shadows
             }
         };
@@ -328,6 +338,11 @@ impl JobPaths {
                 self.stage(&mut work, surfaces, columns, queue)?;
                 if has_shadows {
                     self.stage(&mut work, Stage::ShadowHits, columns, queue)?;
+                    if self.needs.caustics {
+                        columns.clear(&mut work, &columns.shadows.queue);
+                        self.stage(&mut work, Stage::SecondSegments, columns, queue)?;
+                        self.stage(&mut work, Stage::ShadowHits, columns, queue)?;
+                    }
                     self.stage(&mut work, Stage::Shadows, columns, queue)?;
                 }
                 queue = 1 - queue;
@@ -429,6 +444,8 @@ enum Stage {
     Whitted(WhittedStep),
     /// Whether shadow rays hit anything.
     ShadowHits,
+    /// Second segments of caustic samples.
+    SecondSegments,
     /// Light of shadow rays.
     Shadows,
 }

@@ -9,6 +9,84 @@ const QUEUED_RAYS: &str = concat!(
     include_str!("stages/queue.wgsl")
 );
 
+const PARAMS: &str = include_str!("stages/params.wgsl");
+const SPHERES: &str = include_str!("stages/spheres.wgsl");
+const RAYS: &str = include_str!("stages/rays.wgsl");
+const SPHERE_TERMS: &str = include_str!("stages/sphere_terms.wgsl");
+const PATH_STATE: &str = include_str!("stages/path_state.wgsl");
+const QUEUE: &str = include_str!("stages/queue.wgsl");
+const SHADOW_RAYS: &str = include_str!("stages/shadow_rays.wgsl");
+/// What paths need of a job, its arithmetic and its samples.
+const JOB: [&str; 8] = [
+    PARAMS,
+    include_str!("stages/arithmetic.wgsl"),
+    SPHERE_TERMS,
+    include_str!("stages/job.wgsl"),
+    include_str!("stages/hash.wgsl"),
+    include_str!("stages/sobol.wgsl"),
+    include_str!("stages/warp.wgsl"),
+    include_str!("stages/ground.wgsl"),
+];
+/// Surfaces, and what is around all of them.
+const SURFACE: [&str; 7] = [
+    SPHERES,
+    include_str!("stages/materials.wgsl"),
+    include_str!("stages/surface.wgsl"),
+    include_str!("stages/basis.wgsl"),
+    include_str!("stages/angles.wgsl"),
+    include_str!("stages/sky.wgsl"),
+    include_str!("stages/environment.wgsl"),
+];
+/// Scattering.
+const BSDFS: [&str; 7] = [
+    include_str!("stages/shade.wgsl"),
+    include_str!("stages/fresnel.wgsl"),
+    include_str!("stages/ggx.wgsl"),
+    include_str!("stages/lambertian.wgsl"),
+    include_str!("stages/conductor.wgsl"),
+    include_str!("stages/plastic.wgsl"),
+    include_str!("stages/reflective.wgsl"),
+];
+/// Light samples.
+const LIGHTS: [&str; 7] = [
+    include_str!("stages/lights.wgsl"),
+    include_str!("stages/light_tree.wgsl"),
+    include_str!("stages/sphere_light.wgsl"),
+    include_str!("stages/point_light.wgsl"),
+    include_str!("stages/sun.wgsl"),
+    include_str!("stages/sky_light.wgsl"),
+    include_str!("stages/direct_light.wgsl"),
+];
+/// What bounces of all integrators have in common.
+const BOUNCE: [&str; 8] = [
+    PATH_STATE,
+    QUEUE,
+    RAYS,
+    SHADOW_RAYS,
+    include_str!("stages/path_columns.wgsl"),
+    include_str!("stages/interior.wgsl"),
+    include_str!("stages/glass.wgsl"),
+    include_str!("stages/roulette.wgsl"),
+];
+/// Caustic samples.
+const CAUSTICS: [&str; 8] = [
+    include_str!("stages/casters.wgsl"),
+    include_str!("stages/caster_tree.wgsl"),
+    include_str!("stages/caustic_choice.wgsl"),
+    include_str!("stages/specular_sphere.wgsl"),
+    include_str!("stages/connection.wgsl"),
+    include_str!("stages/caustic_sample.wgsl"),
+    include_str!("stages/chain.wgsl"),
+    include_str!("stages/caustics.wgsl"),
+];
+/// Bounces of path tracing.
+const PATH: [&str; 4] = [
+    include_str!("stages/mirrored_light.wgsl"),
+    include_str!("stages/glass_mirror.wgsl"),
+    include_str!("stages/emission.wgsl"),
+    include_str!("stages/path.wgsl"),
+];
+
 /// A kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kernel {
@@ -25,8 +103,10 @@ pub(crate) enum Kernel {
     Occlusion,
     /// Light of shadow rays.
     Shadows,
-    /// A bounce of paths.
-    Path,
+    /// Second segments of caustic samples.
+    SecondSegments,
+    /// A bounce of paths, on which surfaces sample `caustics` or not.
+    Path { caustics: bool },
     /// A step of a bounce of Whitted ray tracing.
     Whitted(WhittedStep),
     /// Sums of pixels.
@@ -46,7 +126,7 @@ pub(crate) enum WhittedStep {
 
 impl Kernel {
     /// The number of kernels.
-    pub(crate) const COUNT: usize = 33;
+    pub(crate) const COUNT: usize = 35;
 
     /// Returns its place among all kernels.
     pub(crate) fn place(self) -> usize {
@@ -57,9 +137,11 @@ impl Kernel {
             Self::Generate => 16,
             Self::Occlusion => 17,
             Self::Shadows => 18,
-            Self::Path => 19,
+            Self::Path { caustics: false } => 19,
             Self::Doubles => 20,
             Self::Film => 21,
+            Self::SecondSegments => 33,
+            Self::Path { caustics: true } => 34,
             Self::Whitted(step) => 22 + step as usize,
             Self::HitsAgain { any, cut, queued } => {
                 25 + [any, cut, queued].iter().fold(0, |place, &is| 2 * place + usize::from(is))
@@ -81,6 +163,7 @@ impl Kernel {
             Self::HitsAgain { any, cut, .. } => &[("ANY", any), ("AGAIN", true), ("CUT", cut)]
                 .map(|(name, is)| (name, u8::from(is).into())),
             Self::Whitted(step) => &[("STEP", f64::from(step as u8))],
+            Self::Path { caustics } => &[("CAUSTICS", u8::from(caustics).into())],
             _ => &[],
         };
         device.kernel((name, &files.concat()), constants)
@@ -88,66 +171,6 @@ impl Kernel {
 
     /// Returns its name, and its files.
     fn files(self) -> (&'static str, Vec<&'static str>) {
-        const PARAMS: &str = include_str!("stages/params.wgsl");
-        const SPHERES: &str = include_str!("stages/spheres.wgsl");
-        const RAYS: &str = include_str!("stages/rays.wgsl");
-        const SPHERE_TERMS: &str = include_str!("stages/sphere_terms.wgsl");
-        const PATH_STATE: &str = include_str!("stages/path_state.wgsl");
-        const QUEUE: &str = include_str!("stages/queue.wgsl");
-        const SHADOW_RAYS: &str = include_str!("stages/shadow_rays.wgsl");
-        // What paths need of a job, its arithmetic and its samples.
-        const JOB: [&str; 8] = [
-            PARAMS,
-            include_str!("stages/arithmetic.wgsl"),
-            SPHERE_TERMS,
-            include_str!("stages/job.wgsl"),
-            include_str!("stages/hash.wgsl"),
-            include_str!("stages/sobol.wgsl"),
-            include_str!("stages/warp.wgsl"),
-            include_str!("stages/ground.wgsl"),
-        ];
-        const SURFACE: [&str; 7] = [
-            SPHERES,
-            include_str!("stages/materials.wgsl"),
-            include_str!("stages/surface.wgsl"),
-            include_str!("stages/basis.wgsl"),
-            include_str!("stages/angles.wgsl"),
-            include_str!("stages/sky.wgsl"),
-            include_str!("stages/environment.wgsl"),
-        ];
-        const BSDFS: [&str; 7] = [
-            include_str!("stages/shade.wgsl"),
-            include_str!("stages/fresnel.wgsl"),
-            include_str!("stages/ggx.wgsl"),
-            include_str!("stages/lambertian.wgsl"),
-            include_str!("stages/conductor.wgsl"),
-            include_str!("stages/plastic.wgsl"),
-            include_str!("stages/reflective.wgsl"),
-        ];
-        const LIGHTS: [&str; 7] = [
-            include_str!("stages/lights.wgsl"),
-            include_str!("stages/light_tree.wgsl"),
-            include_str!("stages/sphere_light.wgsl"),
-            include_str!("stages/point_light.wgsl"),
-            include_str!("stages/sun.wgsl"),
-            include_str!("stages/sky_light.wgsl"),
-            include_str!("stages/direct_light.wgsl"),
-        ];
-        const BOUNCE: [&str; 8] = [
-            PATH_STATE,
-            QUEUE,
-            RAYS,
-            SHADOW_RAYS,
-            include_str!("stages/path_columns.wgsl"),
-            include_str!("stages/interior.wgsl"),
-            include_str!("stages/glass.wgsl"),
-            include_str!("stages/roulette.wgsl"),
-        ];
-        const PATH: [&str; 3] = [
-            include_str!("stages/mirrored_light.wgsl"),
-            include_str!("stages/emission.wgsl"),
-            include_str!("stages/path.wgsl"),
-        ];
         let of = |groups: &[&[&'static str]]| groups.concat();
         match self {
             Self::Hits { queued, .. } => {
@@ -179,6 +202,20 @@ impl Kernel {
                 let shadows = include_str!("stages/shadow_queue.wgsl");
                 ("shadow_queue", vec![PARAMS, QUEUE, RAYS, shadows])
             }
+            Self::SecondSegments => {
+                let files = [
+                    PARAMS,
+                    include_str!("stages/arithmetic.wgsl"),
+                    SPHERE_TERMS,
+                    include_str!("stages/job.wgsl"),
+                    include_str!("stages/ground.wgsl"),
+                    QUEUE,
+                    RAYS,
+                    SHADOW_RAYS,
+                    include_str!("stages/second_segments.wgsl"),
+                ];
+                ("second_segments", files.to_vec())
+            }
             Self::Film => {
                 let arithmetic = include_str!("stages/arithmetic.wgsl");
                 ("film", vec![PARAMS, arithmetic, include_str!("stages/film.wgsl")])
@@ -187,7 +224,9 @@ impl Kernel {
                 let whitted = include_str!("stages/whitted.wgsl");
                 ("whitted", of(&[&JOB, &SURFACE, &BSDFS, &LIGHTS, &BOUNCE, &[whitted]]))
             }
-            Self::Path => ("path", of(&[&JOB, &SURFACE, &BSDFS, &LIGHTS, &BOUNCE, &PATH])),
+            Self::Path { .. } => {
+                ("path", of(&[&JOB, &SURFACE, &BSDFS, &LIGHTS, &BOUNCE, &CAUSTICS, &PATH]))
+            }
         }
     }
 }

@@ -64,6 +64,7 @@ pub(crate) struct Params {
     pub(crate) bounce: u32,
     pub(crate) shadows: u32,
     pub(crate) first_shadow: u32,
+    pub(crate) caustics: u32,
 }
 
 /// Buffers of one dispatch.

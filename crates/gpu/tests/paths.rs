@@ -166,7 +166,6 @@ fn compare_material(name: &str, material: &Material, suns: &[f64], device: &Arc<
         for named in scene.materials.iter_mut().filter(|row| row.name != "floor") {
             named.material = material.clone();
         }
-        scene.settings.caustics = false;
         if let Some(radius) = sun {
             add_sun(&mut scene, radius);
         }
@@ -215,7 +214,6 @@ fn mixed_materials_in_all_scenes_are_the_processors() {
         diffuse(&mut scene);
         of_materials(&mut scene, &materials);
         add_sun(&mut scene, 12.0);
-        scene.settings.caustics = false;
         compare(&path.display().to_string(), &scene, &device);
     }
 }
@@ -275,7 +273,6 @@ fn lights_of_every_kind_are_the_processors() {
                     add_lights(&mut scene);
                 }
                 scene.settings.light_choice = choice;
-                scene.settings.caustics = false;
                 let case = format!("{name}, {choice:?}, lights {lights}, emitters {emitters}");
                 let found = compare(&case, &scene, &device);
                 assert!(found.unknown_paths * 20 < found.paths, "{case} {found:?}");
@@ -301,7 +298,6 @@ fn one_emitter_and_hundreds_are_the_processors() {
         for material in scene.spheres.material.iter_mut().step_by(every) {
             *material = glowing;
         }
-        scene.settings.caustics = false;
         let found = compare(name, &scene, &device);
         assert!(found.unknown_paths * 20 < found.paths, "{name} {found:?}");
     }
@@ -343,11 +339,40 @@ fn glass_that_stands_alone_is_the_processors() {
                 if background {
                     scene.look.background = Background::Color(Rgb::new(0.1, 0.5, 0.3));
                 }
-                scene.settings.caustics = false;
                 let case = format!("{name} glass, background {background}, lights {lights}");
                 let found = compare(&case, &scene, &device);
                 assert!(found.unknown_paths * 20 < found.paths, "{case} {found:?}");
             }
+        }
+    }
+}
+
+/// Returns smooth materials, which cast caustics.
+fn smooth_materials() -> Vec<(&'static str, Material)> {
+    let smooth = |(name, _): &(&str, Material)| ["mirror", "plastic", "gold"].contains(name);
+    let mut all: Vec<_> = opaque_materials().into_iter().filter(smooth).collect();
+    all.push(("glass", Material::Dielectric { ior: 1.5, color: Rgb::new(0.9, 0.7, 0.95) }));
+    all
+}
+
+#[test]
+fn caustics_are_the_processors() {
+    let Some(device) = device() else { return };
+    let [rough, ..] = &rough_materials()[..] else { panic!("there are some") };
+    for (name, smooth) in smooth_materials() {
+        for (suns, emitters) in [(true, false), (false, true), (true, true)] {
+            let mut scene = named("paper-field-20.toml");
+            diffuse(&mut scene);
+            of_materials(&mut scene, &[rough.clone(), smooth.clone()]);
+            if emitters {
+                add_emitters(&mut scene, &[rough.clone(), smooth.clone()]);
+            }
+            if suns {
+                add_sun(&mut scene, 3.0);
+            }
+            let case = format!("caustics of {name}, suns {suns}, emitters {emitters}");
+            let found = compare(&case, &scene, &device);
+            assert!(found.unknown_paths * 20 < found.paths, "{case} {found:?}");
         }
     }
 }
@@ -433,7 +458,6 @@ fn pictures_of_skies_are_the_processors() {
                 scene.environment.map =
                     EnvironmentMap::Picture { image, up, rotation: 0.7, scale: 1.3 };
                 scene.environment.illuminates = illuminates;
-                scene.settings.caustics = false;
                 scene.settings.light_choice = choice;
                 for integrator in [Integrator::Path, Integrator::Ao { distance: 2.0 }] {
                     scene.settings.integrator = integrator;
@@ -478,8 +502,7 @@ fn scenes_that_devices_follow_are_the_processors() {
     let Some(device) = device() else { return };
     let mut followed = Vec::new();
     for path in files() {
-        let mut scene = load(&path);
-        scene.settings.caustics = false;
+        let scene = load(&path);
         let world = World::build(&scene).unwrap();
         let why = not_followed(&world, &scene.settings);
         println!("{}: {why:?}", path.display());
@@ -635,22 +658,11 @@ fn what_devices_do_not_do_is_told() {
     };
     assert_eq!(told(&|_| ()), None);
     let glass = Material::Dielectric { ior: 1.5, color: Rgb::ONE };
-    let mirroring = |scene: &mut Scene| {
-        scene.materials[0].material = glass.clone();
-        add_sun(scene, 40.0);
-    };
-    assert_eq!(told(&mirroring), Some("glass mirrors lights"));
     let around = |scene: &mut Scene| {
         scene.materials[0].material = glass.clone();
         scene.spheres.push(DVec3::ZERO, 1e3, 0, Rgb::ONE);
     };
     assert_eq!(told(&around), Some("glass is around the camera"));
-    let caustics = |scene: &mut Scene| {
-        let (_, plastic) = opaque_materials().swap_remove(5);
-        of_materials(scene, &[plastic]);
-        add_sun(scene, 5.0);
-    };
-    assert_eq!(told(&caustics), Some("caustics are sampled"));
     let whitted = |scene: &mut Scene| {
         add_sun(scene, 5.0);
         scene.settings.integrator = Integrator::Whitted { shadow_samples: 1025 };

@@ -1,18 +1,22 @@
 // Scattering at glass: `integrator/glass.rs` and `shade/dielectric.rs`.
 
+// The index of refraction outside of a glass sphere that a path has hit; 0 if there is no interface, in other glass that
+// decides the medium on both sides.
+fn index_outside(path: u32, hit: u32) -> f32 {
+    if has(NESTED_GLASS) {
+        return outside_ior(path, hit);
+    }
+    return 1.0;
+}
+
 // Replaces the ray of a path by the one that is reflected, if the choice is less than the reflectance, or refracted. False
 // if the device does not know what contains the path.
-fn scatter_glass(path: u32, surface: ptr<function, Surface>, choice: f32) -> bool {
+fn scatter_glass(path: u32, surface: ptr<function, Surface>, outside: f32, choice: f32) -> bool {
     let hit = (*surface).hit;
     let normal = (*surface).normal;
     let toward = vec3<f64>(ray_direction(path));
     let direction = kept3(toward * inverse_length(toward));
     let entering = dot_unfused(direction, normal) < 0.0;
-    var outside = 1.0;
-    if has(NESTED_GLASS) {
-        outside = outside_ior(path, hit);
-    }
-    // In other glass that decides the medium on both sides, there is no interface.
     let real = outside > 0.0;
     var sent = direction;
     var inside = entering;

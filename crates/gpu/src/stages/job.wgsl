@@ -49,6 +49,8 @@ struct Job {
     last_rows: u32,
     // Number of the children of the light tree's root.
     top: u32,
+    // Where the rows of specular spheres and their emitters begin.
+    caster_rows: u32,
     // Whitted ray tracing: samples of each light with extent, and of all lights and the sky.
     shadow_samples: u32,
     all_shadows: u32,

@@ -2,11 +2,13 @@
 //
 // `light_rows` is bound by the kernels. Of each emissive sphere it has the radiance and the sphere; then the same spheres
 // with their numbers among these, by sphere; of each point three rows, of each sun five; then two rows of each node of the
-// light tree, and the leaf of each light, or cumulative probabilities.
+// light tree, and the leaf of each light, or cumulative probabilities. `casters.wgsl` describes the others.
 
 struct LightChoice {
     light: u32,
     probability: f32,
+    // The place of the random number in the light's share, by the tree.
+    rest: f64,
 }
 
 // A light sample.
@@ -63,23 +65,23 @@ fn choose_by_table(draw: f32) -> LightChoice {
             high = middle;
         }
     }
-    return LightChoice(low, keep(cumulative(low + 1u) - cumulative(low)));
+    return LightChoice(low, keep(cumulative(low + 1u) - cumulative(low)), 0.0lf);
 }
 
 fn choose_light(point: vec3<f32>, normal: vec3<f32>, draw: f64) -> LightChoice {
     if has(LIGHT_TREE) {
-        return choose_in_tree(point, normal, draw);
+        return choose_in_tree(light_tree(), point, normal, draw);
     }
     if has(LIGHT_TABLE) {
         return choose_by_table(f32(draw));
     }
-    return LightChoice(0u, 1.0);
+    return LightChoice(0u, 1.0, 0.0lf);
 }
 
 // The probability with which a light is chosen.
 fn light_probability(point: vec3<f32>, normal: vec3<f32>, light: u32) -> f32 {
     if has(LIGHT_TREE) {
-        return probability_in_tree(point, normal, light);
+        return probability_in_tree(light_tree(), point, normal, light);
     }
     if has(LIGHT_TABLE) {
         return keep(cumulative(light + 1u) - cumulative(light));

@@ -2,12 +2,24 @@
 // rays is that of its light sample; those of suns follow, and one of an emissive sphere: of those in a direction, the
 // nearest occludes the others.
 
-// Writes the shadow rays toward the lights in a mirrored direction, which bring this part of their radiance. False if
-// the device does not know which.
-fn mirror_lights(path: u32, surface: ptr<function, Surface>, toward: vec3<f32>, factor: vec3<f32>) -> bool {
+// Writes the shadow rays toward the lights in a mirrored direction, which bring this part of their radiance, beside
+// caustic samples at the bounce before, which was this one. False if the device does not know which.
+fn mirror_lights(
+    path: u32,
+    surface: ptr<function, Surface>,
+    toward: vec3<f32>,
+    factor: vec3<f32>,
+    previous: u32,
+) -> bool {
     for (var sun = 0u; sun < job.suns; sun++) {
-        let light = keep3(factor * sun_radiance(sun));
-        if sun_is_toward(sun, toward) && 0.0 < greatest_of(light) {
+        if !sun_is_toward(sun, toward) {
+            continue;
+        }
+        var light = keep3(factor * sun_radiance(sun));
+        if CAUSTICS {
+            light = scaled(light, mirrored_weight(path, (*surface).hit, previous, emitter_of_sun(sun), toward, toward));
+        }
+        if 0.0 < greatest_of(light) {
             write_shadow_ray(path, 1u + sun, surface, toward, light, INFINITELY_FAR, MISS);
         }
     }
@@ -23,8 +35,15 @@ fn mirror_lights(path: u32, surface: ptr<function, Surface>, toward: vec3<f32>, 
         if !ahead.known {
             return false;
         }
-        let light = keep3(factor * light_vector(emitter));
-        if !ahead.meets || !(0.0 < greatest_of(light)) {
+        if !ahead.meets {
+            continue;
+        }
+        var light = keep3(factor * light_vector(emitter));
+        if CAUSTICS {
+            let end = keep3((*surface).point + scaled(toward, f32(ahead.t)));
+            light = scaled(light, mirrored_weight(path, (*surface).hit, previous, emitter, end, toward));
+        }
+        if !(0.0 < greatest_of(light)) {
             continue;
         }
         if goal != MISS {

@@ -17,6 +17,8 @@ struct Params {
     shadows: u32,
     // The first of the shadow samples of a surface that come next, in Whitted ray tracing.
     first_shadow: u32,
+    // 1 if paths have caustic samples.
+    caustics: u32,
 }
 
 // Not a uniform buffer: drivers may compile kernels anew for its values, and then they know the 0.
@@ -26,7 +28,7 @@ struct Params {
 const NO_ROW: u32 = 0xffffffffu;
 
 // Words before the rows of a queue.
-const QUEUE_HEAD: u32 = 4u;
+const QUEUE_HEAD: u32 = 5u;
 
 const MISS: u32 = 0xffffffffu;
 const GROUND: u32 = 0xfffffffeu;

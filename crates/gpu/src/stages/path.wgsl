@@ -1,6 +1,14 @@
 // A bounce of paths: `integrator/path.rs`. Replaces each ray by the next one of its path, and writes its shadow rays
 // with the light that they carry.
 
+// Specular bounces of paths since the last diffuse surface, in four rows, the last of which has the path's first caustic
+// sample; and of each caustic sample its second segment, in three rows, and the next sample of the path.
+@group(0) @binding(22) var<storage, read_write> chains: array<vec4<u32>>;
+@group(0) @binding(23) var<storage, read_write> seconds: array<vec4<u32>>;
+
+// True if surfaces sample caustics: kernels without them keep less.
+override CAUSTICS: bool = true;
+
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let path = row_of(id.x);
@@ -8,6 +16,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     clear_shadow_rays(path);
+    if CAUSTICS {
+        begin_chain(path);
+    }
     if params.bounce == 0u && has(NESTED_GLASS) {
         clear_interiors(path);
     }
@@ -28,15 +39,26 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     if kind == EMITTER {
-        add_light(path, emitted_light(path, surface.hit, state));
+        add_light(path, emitted_light(path, &surface, state));
     }
     if cut {
         return;
     }
     let sequence = sequences[path];
+    if CAUSTICS && (kind == CONDUCTOR || kind == DIELECTRIC || kind == PLASTIC) {
+        track_chain(path, surface.hit, state.previous);
+    }
     if kind == DIELECTRIC {
-        if !scatter_glass(path, &surface, draw4(sequence, choices(params.bounce)).z) {
+        let outside = index_outside(path, surface.hit);
+        let from_outside = meets_glass_from_outside(path, &surface, outside);
+        if has(MIRRORED_LIGHT) && !mirror_lights_by_glass(path, &surface, outside, from_outside, state) {
             paths[path].w |= 1u;
+            return;
+        }
+        if !scatter_glass(path, &surface, outside, draw4(sequence, choices(params.bounce)).z) {
+            paths[path].w |= 1u;
+        } else if has(MIRRORED_LIGHT) {
+            mark_mirrored_light(path, surface.hit, from_outside, state.previous);
         }
         return;
     }
@@ -64,7 +86,14 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if mirrors {
         let factor = keep3(state.throughput * bsdf_mirrored(&bsdf, outgoing));
         let toward = normalized(to_world(basis, mirror(outgoing)));
-        if 0.0 < greatest_of(factor) && !mirror_lights(path, &surface, toward, factor) {
+        if 0.0 < greatest_of(factor) && !mirror_lights(path, &surface, toward, factor, state.previous) {
+            paths[path].w |= 1u;
+            return;
+        }
+    }
+    // After all other light of the path.
+    if CAUSTICS && has(LIGHTS) && !is_delta(&bsdf) && !surface.inside {
+        if !sample_caustics(path, &surface, &bsdf, basis, outgoing, state.throughput, sequence) {
             paths[path].w |= 1u;
             return;
         }

@@ -1,37 +1,42 @@
 // Emissive spheres as seen from points: `world/lights/sphere_light.rs` and `sampling/cone.rs`.
 
-// A sphere as seen from a point: the cone that it fills.
-struct SphereView {
+// The cone of directions to a sphere.
+struct Cone {
     // False from inside.
     outside: bool,
-    direction: vec3<f32>,
-    // 1 - cos of the cone's half-angle, and the density of its directions.
+    // 1 - cos of the half-angle, and the density of the directions.
     height: f32,
     pdf: f32,
+}
+
+// A sphere as seen from a point.
+struct SphereView {
+    direction: vec3<f32>,
+    cone: Cone,
     close: bool,
 }
 
 const TWO_PI: f64 = 0x1.921fb54442d18p+2lf;
 const LEAST_HEIGHT: f64 = 0x1p-126lf;
 
+// `Cone::toward_sphere`.
+fn cone_toward(distance2: f64, radius: f64) -> Cone {
+    let distance = sqrt(distance2);
+    let sine = radius / distance;
+    let cosine2 = kept(kept(distance - radius) / distance * (kept(distance + radius) / distance));
+    let height = max(kept(sine * sine) / kept(1.0lf + sqrt(cosine2)), LEAST_HEIGHT);
+    let outside = 0.0lf < radius && radius < distance;
+    return Cone(outside, f32(height), f32(1.0lf / kept(TWO_PI * height)));
+}
+
 fn view_sphere(point: vec3<f32>, sphere: u32) -> SphereView {
     let bits = sphere_row(sphere);
     let radius = f64(bitcast<f32>(bits.w));
     let toward = kept3(vec3<f64>(bitcast<vec3<f32>>(bits.xyz)) - vec3<f64>(point));
     let distance2 = dot_unfused(toward, toward);
-    let distance = sqrt(distance2);
-    let direction = kept3(toward * (1.0lf / distance));
+    let direction = kept3(toward * (1.0lf / sqrt(distance2)));
     let reach = kept(job.reach * radius);
-    let sine = radius / distance;
-    let cosine2 = kept(kept(distance - radius) / distance * (kept(distance + radius) / distance));
-    let height = max(kept(sine * sine) / kept(1.0lf + sqrt(cosine2)), LEAST_HEIGHT);
-    return SphereView(
-        0.0lf < radius && radius < distance,
-        vec3<f32>(direction),
-        f32(height),
-        f32(1.0lf / kept(TWO_PI * height)),
-        distance2 < kept(reach * reach),
-    );
+    return SphereView(vec3<f32>(direction), cone_toward(distance2, radius), distance2 < kept(reach * reach));
 }
 
 // Whether a ray from a surface meets a sphere ahead, and where, as `intersect::confirm` of spherule-core decides.
@@ -64,17 +69,17 @@ fn sample_sphere_light(point: vec3<f32>, own: u32, light: u32, u: vec2<f32>) -> 
         return sample;
     }
     let seen = view_sphere(point, sphere);
-    if !seen.outside {
+    if !seen.cone.outside {
         return sample;
     }
     sample.lit = true;
-    sample.direction = to_world(basis_about(seen.direction), cap(u, seen.height));
+    sample.direction = to_world(basis_about(seen.direction), cap(u, seen.cone.height));
     let ahead = sphere_ahead(point, sample.direction, sphere);
     sample.known = ahead.known && ahead.meets;
     sample.t = ahead.t;
     sample.goal = sphere;
-    sample.weight = quotients(light_vector(light), seen.pdf);
-    sample.pdf = seen.pdf;
+    sample.weight = quotients(light_vector(light), seen.cone.pdf);
+    sample.pdf = seen.cone.pdf;
     sample.close = seen.close;
     return sample;
 }

@@ -195,7 +195,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         if STEP == SHADOWS {
             return;
         }
-        if !scatter_glass(path, &surface, draw4(sequences[path], choices(params.bounce)).z) {
+        let outside = index_outside(path, surface.hit);
+        if !scatter_glass(path, &surface, outside, draw4(sequences[path], choices(params.bounce)).z) {
             paths[path].w |= 1u;
         }
         return;

@@ -7,7 +7,8 @@ use super::whitted;
 use crate::scene::{Integrator, Rgb, Roulette, SamplerKind};
 use crate::shade::MaterialKind;
 use crate::world::{
-    DeviceIntegration, DeviceJob, DeviceLights, DeviceRoulette, DeviceSky, Picture, Radiance, World,
+    DeviceCaustics, DeviceIntegration, DeviceJob, DeviceLights, DeviceRoulette, DeviceSky, Picture,
+    Radiance, World,
 };
 
 /// Most shadow samples of a surface in Whitted ray tracing.
@@ -56,10 +57,17 @@ pub fn device_job<'a>(job: &Job<'a>) -> Result<DeviceJob<'a>, &'static str> {
         DeviceIntegration::Occlusion { .. } => DeviceLights::default(),
         _ => world.lights.for_devices(),
     };
+    let paths = job.settings.integrator == Integrator::Path;
+    let caustics = if paths && job.settings.caustics {
+        world.caustic_casters.for_devices()
+    } else {
+        DeviceCaustics::default()
+    };
     Ok(DeviceJob {
         world,
         integration,
         lights,
+        caustics,
         camera: world.camera.terms(),
         sky: sky(world),
         picture: world.environment.picture().map(Picture::for_devices),
@@ -94,14 +102,11 @@ fn unsupported(job: &Job) -> Option<&'static str> {
         return Some("many suns are mirrored");
     }
     let paths = job.settings.integrator == Integrator::Path;
-    if paths && job.settings.caustics && world.has_caustics() {
-        return Some("caustics are sampled");
+    if paths && job.settings.caustics && world.caustic_casters.is_deep() {
+        return Some("the tree of specular spheres is deep");
     }
     if !world.features.has(MaterialKind::Dielectric) {
         return None;
-    }
-    if job.samples_mirrored_light() {
-        return Some("glass mirrors lights");
     }
     (!world.features.glass_at_camera.is_empty()).then_some("glass is around the camera")
 }

@@ -29,7 +29,7 @@ const PLACES: usize = MAX_LANES;
 
 /// Images of lights near the pixels of a batch of paths.
 #[derive(Default)]
-pub(super) struct SeenLights {
+pub struct SeenLights {
     images: Vec<LightImage>,
     /// Their numbers in the list of all.
     numbers: Vec<u32>,
@@ -81,7 +81,7 @@ impl Job<'_> {
 
 impl SeenLights {
     /// Prepares for paths of pixels of some regions.
-    pub(super) fn begin(&mut self, job: &Job, regions: impl Iterator<Item = Region>) {
+    pub fn begin(&mut self, job: &Job, regions: impl Iterator<Item = Region>) {
         if !job.samples_images() {
             return;
         }
@@ -98,8 +98,13 @@ impl SeenLights {
     }
 
     /// Returns whether there are no images near the pixels.
-    pub(super) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.images.is_empty()
+    }
+
+    /// Returns whether the camera sees a light in a pixel of these regions.
+    pub fn are_in(&self, job: &Job, (x, y): (u32, u32)) -> bool {
+        self.images.iter().any(|image| image.reaches([x, y], job.filter.radius()))
     }
 
     /// Stores the pixels of sixteen paths from `first` on.

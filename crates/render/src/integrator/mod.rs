@@ -18,7 +18,7 @@ pub mod features;
 pub mod generate;
 mod glass;
 mod interior;
-mod light_images;
+pub mod light_images;
 pub mod material_queues;
 pub mod material_table;
 mod mirrored_light;

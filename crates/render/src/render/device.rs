@@ -2,13 +2,14 @@
 
 use super::pass::{PASS, probe_pass, tile_pass, trace_paths};
 use super::watch::Watch;
-use crate::film::{PixelSamples, Tile, View};
+use crate::film::{PixelSamples, Region, Tile, View};
 use crate::integrator::Job;
 use crate::integrator::clock::Stage;
 use crate::integrator::counters::Counters;
+use crate::integrator::light_images::SeenLights;
 use crate::integrator::workspace::{BATCH, Workspace};
 use crate::scene::Rgb;
-use crate::world::{DevicePath, DevicePaths, DevicePixels};
+use crate::world::{DevicePath, DevicePaths, DevicePixel, DevicePixels};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -42,12 +43,17 @@ pub(super) fn run<'a>(
         .collect();
     let mut work = Workspace::new(job.world, job.elisions);
     let spares = Spares::default();
+    let mut seen_lights = SeenLights::default();
     // Memory for what is found next.
     let mut idle = DevicePixels::default();
     let mut size = FEWEST;
     let mut followed: Option<Followed> = None;
     loop {
-        let next = if watch.cancelled() { None } else { Batch::next(&mut steps, size) };
+        let next = if watch.cancelled() {
+            None
+        } else {
+            Batch::next(job, &mut steps, size, &mut seen_lights)
+        };
         if next.is_none() && followed.is_none() {
             return;
         }
@@ -64,9 +70,10 @@ pub(super) fn run<'a>(
         work.clock.end(if finished.is_some() { Stage::Film } else { Stage::Trace });
         if let Some((followed, counters)) = finished {
             work.counters.add(&counters);
-            let Batch { steps: done, pass, pixels } = followed.batch;
+            let Batch { steps: done, pass, .. } = followed.batch;
             idle = followed.found;
-            report(&mut work, (pixels.len() * pass.len()) as u64);
+            let pixels: u64 = done.iter().map(|(tile, _)| u64::from(tile.len())).sum();
+            report(&mut work, pixels * pass.len() as u64);
             let left = done.into_iter().map(|(tile, samples)| (tile, pass.end..samples.end));
             steps.extend(left.filter(|(_, samples)| !samples.is_empty()));
         }
@@ -82,13 +89,20 @@ struct Batch<'a> {
     steps: Vec<Step<'a>>,
     /// Samples that all of them get now.
     pass: Range<u32>,
-    /// The pixels of all tiles.
+    /// The pixels of all tiles, without those in which the camera sees lights: the processor samples these.
     pixels: Vec<(u32, u32)>,
+    /// Of each tile, whether the camera sees lights in its pixels; empty if it sees none.
+    seen: Vec<Vec<bool>>,
 }
 
 impl<'a> Batch<'a> {
     /// Takes tiles with about so many paths from those that are left; `None` if none is.
-    fn next(steps: &mut Vec<Step<'a>>, size: usize) -> Option<Self> {
+    fn next(
+        job: &Job,
+        steps: &mut Vec<Step<'a>>,
+        size: usize,
+        lights: &mut SeenLights,
+    ) -> Option<Self> {
         steps.sort_by_key(|(tile, samples)| (samples.start, samples.end, tile.region.y));
         let pass = next_pass(&steps.first()?.1);
         let mut paths = 0;
@@ -98,8 +112,19 @@ impl<'a> Batch<'a> {
         };
         let count = steps.iter().take_while(fits).count().max(1);
         let steps: Vec<Step> = steps.drain(..count).collect();
-        let pixels = steps.iter().flat_map(|(tile, _)| tile.pixels()).collect();
-        Some(Self { steps, pass, pixels })
+        let mut pixels = Vec::new();
+        let seen = steps.iter().map(|(tile, _)| {
+            lights.begin(job, std::iter::once(tile.region));
+            if lights.is_empty() {
+                pixels.extend(tile.pixels());
+                return Vec::new();
+            }
+            let seen: Vec<bool> = tile.pixels().map(|pixel| lights.are_in(job, pixel)).collect();
+            pixels.extend(tile.pixels().zip(&seen).filter(|(_, seen)| !**seen).map(|(at, _)| at));
+            seen
+        });
+        let seen = seen.collect();
+        Some(Self { steps, pass, pixels, seen })
     }
 
     /// Has a device follow the paths.
@@ -129,23 +154,24 @@ impl Followed<'_> {
     /// Adds the samples to the tiles, and those of probes from `probed` on, if it is given. The processor follows the
     /// paths that the device does not know. Returns the counts of all tiles.
     fn add_up(&mut self, job: &Job, probed: Option<u32>, spares: &Spares) -> Counters {
-        let Self { batch: Batch { steps, pass, pixels }, found, failed, .. } = self;
-        let (pass, pixels, found) = (&*pass, &*pixels, &*found);
+        let Self { batch: Batch { steps, pass, seen, .. }, found, failed, .. } = self;
+        let (pass, found) = (&*pass, &*found);
         let mut before = 0;
         let places: Vec<Range<usize>> = steps
             .iter()
-            .map(|(tile, _)| {
+            .zip(&*seen)
+            .map(|((tile, _), seen)| {
                 let first = before;
-                before += tile.len() as usize;
+                before += tile.len() as usize - seen.iter().filter(|&&seen| seen).count();
                 first..before
             })
             .collect();
-        let add = |spare: &mut Spare, (tile, own): (&mut Tile, Range<usize>)| {
+        let add = |spare: &mut Spare, tile: &mut Tile, (own, seen): (Range<usize>, &[bool])| {
             let mut counters = Counters::default();
             if *failed {
                 tile_pass(job, &mut [tile], pass.clone(), spare.get(job));
             } else {
-                counters = add_found(job, tile, (pixels, pass, found), own, spare);
+                counters = add_found(job, tile, (pass, found, own), seen, spare);
             }
             if let Some(from) = probed {
                 probe_pass(job, &mut [tile], from..pass.end, spare.get(job), || true);
@@ -159,31 +185,49 @@ impl Followed<'_> {
         };
         steps
             .par_iter_mut()
-            .zip(places)
-            .map_init(|| Spare::of(spares), |spare, ((tile, _), own)| add(spare, (tile, own)))
+            .zip(places.into_par_iter().zip(seen))
+            .map_init(
+                || Spare::of(spares),
+                |spare, ((tile, _), (own, seen))| add(spare, tile, (own, seen)),
+            )
             .reduce(Counters::default, sum)
     }
 }
 
-/// Adds what a device has found of the pixels of a tile, by their places in a batch; the processor follows paths that the
-/// device does not know. Returns the counts of the others.
+/// Adds what a device has found of the pixels of a tile, of which `own` are the places in a batch; the processor samples
+/// those in which the camera sees lights, and follows paths that the device does not know. Returns the counts of the others.
 fn add_found(
     job: &Job,
     tile: &mut Tile,
-    (pixels, pass, found): (&[(u32, u32)], &Range<u32>, &DevicePixels),
-    own: Range<usize>,
+    (pass, found, own): (&Range<u32>, &DevicePixels, Range<usize>),
+    seen: &[bool],
     spare: &mut Spare,
 ) -> Counters {
     let mut counters = Counters::default();
     let (mut unsummed, mut paths) = (Vec::new(), Vec::new());
-    for (pixel, &position) in found.pixels[own.clone()].iter().zip(&pixels[own.clone()]) {
-        if let Some(place) = pixel.place() {
-            unsummed.push(position);
-            paths.extend_from_slice(&found.samples[place * pass.len()..][..pass.len()]);
-        } else {
-            counters.camera_rays += pass.len() as u64;
-            counters.bounce_rays += pixel.bounce_rays();
-            counters.shadow_rays += pixel.shadow_rays();
+    let mut followed = found.pixels[own].iter();
+    let is_seen = |index: usize| seen.get(index).is_some_and(|&seen| seen);
+    // The pixels that the device has followed; `None` for the others.
+    let pixels: Vec<_> =
+        (0..tile.len() as usize).map(|i| if is_seen(i) { None } else { followed.next() }).collect();
+    for (pixel, position) in pixels.iter().zip(tile.pixels()) {
+        let place = pixel.map(DevicePixel::place);
+        match place {
+            Some(Some(place)) => {
+                unsummed.push(position);
+                paths.extend_from_slice(&found.samples[place * pass.len()..][..pass.len()]);
+            }
+            None => {
+                unsummed.push(position);
+                paths.resize(paths.len() + pass.len(), DevicePath::UNKNOWN);
+            }
+            Some(None) => {
+                let (bounce, shadow) =
+                    pixel.map_or((0, 0), |pixel| (pixel.bounce_rays(), pixel.shadow_rays()));
+                counters.camera_rays += pass.len() as u64;
+                counters.bounce_rays += bounce;
+                counters.shadow_rays += shadow;
+            }
         }
     }
     for path in paths.iter().filter(|path| path.radiance().is_some()) {
@@ -191,23 +235,26 @@ fn add_found(
         counters.bounce_rays += path.bounce_rays();
         counters.shadow_rays += path.shadow_rays();
     }
-    let radiance = complete(job, (&unsummed, pass), &paths, spare);
+    let lit = (!seen.is_empty()).then_some(tile.region);
+    let radiance = complete(job, (&unsummed, pass, lit), &paths, spare);
     let mut each = radiance.chunks_exact(pass.len());
-    let samples = found.pixels[own].iter().map(|pixel| {
-        if pixel.place().is_some() {
-            return PixelSamples::Each(each.next().unwrap_or_default());
-        }
-        let (total, squares) = pixel.sums();
-        PixelSamples::Sums(total, squares)
-    });
+    let samples =
+        pixels.into_iter().map(|pixel| match pixel.filter(|pixel| pixel.place().is_none()) {
+            Some(pixel) => {
+                let (total, squares) = pixel.sums();
+                PixelSamples::Sums(total, squares)
+            }
+            None => PixelSamples::Each(each.next().unwrap_or_default()),
+        });
     counters.bad_samples += tile.add_pixels(pass.len() as u32, samples);
     counters
 }
 
-/// Returns the radiance of the paths of pixels of a tile; the processor follows those that the device does not know.
+/// Returns the radiance of the paths of pixels of a tile; the processor follows those that the device does not know. `lit`
+/// is a region in which the camera sees lights, if any.
 fn complete(
     job: &Job,
-    (pixels, pass): (&[(u32, u32)], &Range<u32>),
+    (pixels, pass, lit): (&[(u32, u32)], &Range<u32>, Option<Region>),
     paths: &[DevicePath],
     spare: &mut Spare,
 ) -> Vec<Rgb> {
@@ -227,7 +274,7 @@ fn complete(
         };
         let streams = (batch.iter().map(pixel), sample..sample + 1);
         let work = spare.get(job);
-        trace_paths(job, (View::Anything, std::iter::empty()), streams, work);
+        trace_paths(job, (View::Anything, lit.into_iter()), streams, work);
         batch.iter().zip(&work.paths.radiance).for_each(|(&path, &found)| radiance[path] = found);
     }
     radiance

@@ -79,6 +79,9 @@ pub struct DevicePath {
 }
 
 impl DevicePath {
+    /// A path that the device has not followed.
+    pub const UNKNOWN: Self = Self { radiance: [0.0; 3], state: 1 };
+
     /// Returns the radiance, if it is known.
     pub fn radiance(&self) -> Option<Rgb> {
         (self.state & 1 == 0).then_some(self.radiance.into())
@@ -94,6 +97,9 @@ impl DevicePath {
         u64::from(self.state >> 16)
     }
 }
+
+/// Most levels of the tree of specular spheres.
+pub(crate) const MAX_CASTER_LEVELS: usize = 16;
 
 /// The integrator of a job, as far as devices have it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -222,6 +228,86 @@ pub struct DeviceSun {
     pub weight: Rgb,
 }
 
+/// The smooth specular spheres that pass on the light of emissive spheres and suns, and these: see [`crate::world`]'s caustics.
+#[derive(Clone, Debug, Default)]
+pub struct DeviceCaustics {
+    /// True if paths sample caustics.
+    pub sampled: bool,
+    /// The specular spheres.
+    pub casters: Vec<DeviceCaster>,
+    /// Their tree; the children of each node are neighbors, and those of the root the first.
+    pub nodes: Vec<DeviceCasterNode>,
+    /// Number of the root's children.
+    pub top: u32,
+    /// Emissive spheres, in the order of [`DeviceLights`], and then suns with discs.
+    pub emitters: Vec<DeviceEmitter>,
+    /// The choice of one of them, by the light that reaches a point from any side.
+    pub choice: DeviceLightChoice,
+    /// Lower corner of a grid of bounds of the number of samples, the reciprocal of a cell's edge, and the number of cells.
+    pub low: glam::Vec3,
+    /// See `low`.
+    pub cells_per_length: f32,
+    /// See `low`.
+    pub cells: glam::UVec3,
+    /// Of each cell, along x first, bounds for the normals +x, +y, +z, -x, -y and -z.
+    pub bounds: Vec<[f32; 6]>,
+}
+
+/// A smooth specular sphere.
+#[derive(Clone, Copy, Debug)]
+pub struct DeviceCaster {
+    /// Its row.
+    pub sphere: u32,
+    /// Index of refraction outside over that inside; 0 for a mirror.
+    pub index: f64,
+    /// Its leaf; [`u32::MAX`] if it has none.
+    pub leaf: u32,
+}
+
+/// A node of the tree of specular spheres: see [`crate::world`]'s caustics.
+#[derive(Clone, Copy, Debug)]
+pub struct DeviceCasterNode {
+    /// Center of its bounds.
+    pub center: glam::Vec3,
+    /// Distance from it within which the spheres' centers are.
+    pub extent: f32,
+    /// Mean radius.
+    pub radius: f32,
+    /// Mean index of refraction outside over that inside.
+    pub index: f32,
+    /// Sums of squared radii times reflectance at normal incidence, and times its rise toward grazing angles.
+    pub reflected: f32,
+    /// See `reflected`.
+    pub rise: f32,
+    /// Sum of squared radii of glass.
+    pub transmitted: f32,
+    /// Row of the sphere of a leaf; [`u32::MAX`] for others.
+    pub sphere: u32,
+    /// First child; the number of a leaf's sphere.
+    pub child: u32,
+    /// Number of children; 0 for a leaf.
+    pub children: u32,
+    /// Parent; [`u32::MAX`] for children of the root.
+    pub parent: u32,
+}
+
+/// An emissive sphere or a sun whose caustics are sampled.
+#[derive(Clone, Copy, Debug)]
+pub struct DeviceEmitter {
+    /// Center of a sphere; that of a sun is far away.
+    pub center: glam::DVec3,
+    /// Its radius.
+    pub radius: f64,
+    /// Center, or direction toward a sun, for estimates.
+    pub place: glam::Vec3,
+    /// Squared radius, that of a sun angular, for estimates.
+    pub radius2: f32,
+    /// Radiance.
+    pub radiance: Rgb,
+    /// Row of the sphere; number of the sun.
+    pub source: u32,
+}
+
 /// Radiance of the sky: `middle`, plus `slope` times the cosine of the angle to `up`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeviceSky {
@@ -270,6 +356,8 @@ pub struct DeviceJob<'a> {
     pub integration: DeviceIntegration,
     /// The lights; none for ambient occlusion.
     pub lights: DeviceLights,
+    /// The specular spheres and emitters of caustics; none without.
+    pub caustics: DeviceCaustics,
     /// The camera.
     pub camera: CameraTerms,
     /// The sky.

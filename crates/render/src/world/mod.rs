@@ -37,9 +37,10 @@ pub(crate) use caustics::{
 pub use census::Features;
 pub use cut::{Cut, Span};
 pub use device::{
-    DeviceIntegration, DeviceIntegrator, DeviceJob, DeviceLightChoice, DeviceLightNode,
-    DeviceLightTree, DeviceLights, DevicePath, DevicePaths, DevicePicture, DevicePixel,
-    DevicePixels, DevicePoint, DeviceRoulette, DeviceSky, DeviceSkyPart, DeviceSun,
+    DeviceCaster, DeviceCasterNode, DeviceCaustics, DeviceEmitter, DeviceIntegration,
+    DeviceIntegrator, DeviceJob, DeviceLightChoice, DeviceLightNode, DeviceLightTree, DeviceLights,
+    DevicePath, DevicePaths, DevicePicture, DevicePixel, DevicePixels, DevicePoint, DeviceRoulette,
+    DeviceSky, DeviceSkyPart, DeviceSun,
 };
 pub use environment::{
     Environment, Irradiance, PartBounds, Picture, Radiance, SkyLight, SkySamples,
@@ -330,11 +331,6 @@ impl World {
             return OpticalDepth::NONE;
         }
         self.materials.optical_depth(self.material(hit))
-    }
-
-    /// Returns whether light is sampled by way of specular spheres, or in the pixels that see it, where a render does.
-    pub(crate) fn has_caustics(&self) -> bool {
-        self.caustic_casters.has_pairs() || !self.light_images.is_empty()
     }
 
     /// Returns the same world without its spheres, and without the light of emissive spheres.

@@ -24,7 +24,7 @@ const SLACK: f64 = 1.25;
 const MAX_EMITTERS: usize = 4;
 
 /// Bounds for the normals +x, +y, +z, -x, -y and -z.
-type ByAxis = [f32; 6];
+pub(super) type ByAxis = [f32; 6];
 
 /// A grid of bounds; without cells, there is no bound anywhere.
 #[derive(Clone, Debug, Default)]
@@ -63,6 +63,11 @@ impl SampleBounds {
             largest.map(|estimate| SLACK as f32 * estimate)
         });
         Self { low, cells_per_length, cells, bound: bound.collect() }
+    }
+
+    /// Returns the lower corner, the reciprocal of a cell's edge, the number of cells, and their bounds.
+    pub(super) fn for_devices(&self) -> (Vec3, f32, UVec3, &[ByAxis]) {
+        (self.low, self.cells_per_length, self.cells, &self.bound)
     }
 
     /// Returns the bound of the number of samples at a point with this unit normal; infinite where there is none.

@@ -10,6 +10,7 @@
 
 mod bounds;
 mod connection;
+mod device;
 mod estimate;
 mod isolation;
 mod sample;

@@ -14,15 +14,15 @@ use crate::world::lights::{BRANCHES, Chances, LightBounds, ROOT, Receiver, Tree}
 #[derive(Clone, Debug, Default)]
 pub(super) struct CasterTree {
     /// Positions, children and parents.
-    nodes: Tree,
-    extent: Vec<f32>,
-    radius: Vec<f32>,
-    index: Vec<f32>,
-    reflected: Vec<f32>,
-    rise: Vec<f32>,
-    transmitted: Vec<f32>,
+    pub(super) nodes: Tree,
+    pub(super) extent: Vec<f32>,
+    pub(super) radius: Vec<f32>,
+    pub(super) index: Vec<f32>,
+    pub(super) reflected: Vec<f32>,
+    pub(super) rise: Vec<f32>,
+    pub(super) transmitted: Vec<f32>,
     /// Row of a leaf's sphere; [`MISS`] for clusters.
-    row: Vec<u32>,
+    pub(super) row: Vec<u32>,
 }
 
 /// Sums over the spheres of a node.
@@ -134,6 +134,22 @@ impl CasterTree {
     pub(super) fn path_to_root(&self, caster: usize) -> impl Iterator<Item = u32> + '_ {
         let above = |&node: &u32| Some(self.nodes.parent[node as usize]).filter(|&up| up != ROOT);
         std::iter::successors(Some(self.nodes.leaf[caster]).filter(|&leaf| leaf != ROOT), above)
+    }
+
+    /// Returns the leaf of a sphere, as its index in the list that the tree was built from; [`ROOT`] if it has none.
+    pub(super) fn leaf_of(&self, caster: usize) -> u32 {
+        self.nodes.leaf.get(caster).copied().unwrap_or(ROOT)
+    }
+
+    /// Returns the number of the root's children.
+    pub(super) fn top(&self) -> u32 {
+        self.nodes.below(ROOT).1 as u32
+    }
+
+    /// Returns the number of levels below the root.
+    pub(super) fn levels(&self) -> usize {
+        let levels = (0..self.nodes.leaf.len()).map(|caster| self.path_to_root(caster).count());
+        levels.max().unwrap_or(0)
     }
 
     /// Returns the parent of a node, or [`ROOT`].

@@ -21,13 +21,20 @@ impl Lights {
             points: points.collect(),
             suns: self.suns.iter().map(Sun::terms).collect(),
             sky_parts: self.sky_parts,
-            choice: match &self.sampler {
-                LightSampler::None => DeviceLightChoice::None,
-                LightSampler::Single => DeviceLightChoice::Single,
-                LightSampler::Tree(tree) => DeviceLightChoice::Tree(tree.for_devices()),
-                LightSampler::Table(table) => DeviceLightChoice::Table(table.cumulative().to_vec()),
-            },
+            choice: self.sampler.for_devices(),
             reach: self.reach,
+        }
+    }
+}
+
+impl LightSampler {
+    /// Returns the choice of a light for devices.
+    pub(in crate::world) fn for_devices(&self) -> DeviceLightChoice {
+        match self {
+            Self::None => DeviceLightChoice::None,
+            Self::Single => DeviceLightChoice::Single,
+            Self::Tree(tree) => DeviceLightChoice::Tree(tree.for_devices()),
+            Self::Table(table) => DeviceLightChoice::Table(table.cumulative().to_vec()),
         }
     }
 }
