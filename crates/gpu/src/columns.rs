@@ -113,7 +113,7 @@ impl Columns {
             pixels: buffer("pixels", pixels, Usage::STORAGE | Usage::COPY_DST)?,
             rays: column("rays", 12)?,
             found: column("answers", 1)?,
-            sequences: column("samples", 2)?,
+            sequences: column("samples", 4)?,
             states: column("states", 16)?,
             paths: buffer("paths", 4 * paths, Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST)?,
             pixel_sums: buffer("sums", SUMS * pixels, Usage::STORAGE | Usage::COPY_SRC)?,

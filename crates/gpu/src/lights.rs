@@ -4,7 +4,7 @@ use crate::caustics;
 use crate::materials::words;
 use bytemuck::{Pod, Zeroable};
 use spherule_render::world::{
-    DeviceCaustics, DeviceLightChoice, DeviceLightNode, DeviceLights, DevicePoint, DeviceSun,
+    DeviceJob, DeviceLightChoice, DeviceLightNode, DeviceLights, DevicePoint, DeviceSun,
 };
 
 /// A distance in radii that stands for an infinite one.
@@ -31,13 +31,14 @@ pub(crate) struct LightNumbers {
     top: u32,
     /// Specular spheres and the emitters of caustics.
     caster_rows: u32,
+    /// Glass spheres in which camera rays may start.
+    camera_glass: u32,
+    camera_glass_rows: u32,
 }
 
-/// Returns the rows of all lights, of four words each, and their numbers.
-pub(crate) fn rows(
-    lights: &DeviceLights,
-    caustics: &DeviceCaustics,
-) -> (Vec<[u32; 4]>, LightNumbers) {
+/// Returns the rows of all lights of a job, of four words each, and of what comes after them; and their numbers.
+pub(crate) fn rows(job: &DeviceJob) -> (Vec<[u32; 4]>, LightNumbers) {
+    let lights = &job.lights;
     let mut rows: Vec<[u32; 4]> = lights
         .emitters
         .iter()
@@ -80,7 +81,11 @@ pub(crate) fn rows(
     };
     numbers.last_rows = rows.len() as u32;
     rows.extend(words(&last));
-    numbers.caster_rows = caustics::append(&mut rows, caustics);
+    numbers.caster_rows = caustics::append(&mut rows, &job.caustics);
+    let around = &job.world.features.glass_at_camera;
+    numbers.camera_glass = around.len() as u32;
+    numbers.camera_glass_rows = rows.len() as u32;
+    rows.extend(words(around));
     (rows, numbers)
 }
 

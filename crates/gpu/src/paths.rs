@@ -78,8 +78,8 @@ impl Integrator {
 pub struct FirstStages {
     /// Camera rays.
     pub camera_rays: Vec<[u32; 12]>,
-    /// Positions in the Sobol sequences, and their seeds.
-    pub sequences: Vec<[u32; 2]>,
+    /// Positions in the Sobol sequences, their keys, and numbers of samples.
+    pub sequences: Vec<[u32; 4]>,
     /// First hits.
     pub found: Vec<u32>,
     /// The rays that follow: shadow rays of ambient occlusion, or those of the first bounce.
@@ -151,7 +151,7 @@ impl JobPaths {
     fn new(integrator: &Integrator, job: &DeviceJob) -> Result<Self, DeviceError> {
         let device = integrator.tree.device();
         let filled = |what, bytes: &[u8]| device.filled(what, bytes);
-        let (lights, light_numbers) = lights::rows(&job.lights, &job.caustics);
+        let (lights, light_numbers) = lights::rows(job);
         Ok(Self {
             tree: Arc::clone(&integrator.tree),
             appearance: integrator.appearance.clone(),

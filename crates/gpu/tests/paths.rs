@@ -17,7 +17,7 @@ use spherule_render::render::{
 };
 use spherule_render::scene::{
     Background, ConductorFresnel, EnvironmentMap, Integrator, Lens, Light, LightChoice, Material,
-    NamedMaterial, Preset, Rgb, Roulette, Scene,
+    NamedMaterial, Pose, Preset, Rgb, Roulette, Scene,
 };
 use spherule_render::settings::{Filter, SamplerKind};
 use std::path::{Path, PathBuf};
@@ -470,6 +470,12 @@ fn pictures_of_skies_are_the_processors() {
     }
 }
 
+/// Returns where the camera is.
+fn eye_of(scene: &Scene) -> DVec3 {
+    let Pose::LookAt { eye, .. } = scene.camera.pose else { panic!("it has a place") };
+    eye
+}
+
 #[test]
 fn nested_and_overlapping_glass_is_the_processors() {
     let Some(device) = device() else { return };
@@ -490,11 +496,36 @@ fn nested_and_overlapping_glass_is_the_processors() {
             scene.spheres.push(center + DVec3::Y * radius, 0.7 * radius, row, Rgb::ONE);
             scene.spheres.push(center + DVec3::X * radius, radius, row, Rgb::ONE);
         }
-        // Devices leave paths of more than thirty bounces to the processor.
-        scene.settings.depth = Some(30);
         let found = compare(&format!("nested glass {tint}"), &scene, &device);
         assert!(found.unknown_paths * 20 < found.paths, "{found:?}");
+        // And around the camera, two of them.
+        let eye = eye_of(&scene);
+        scene.spheres.push(eye, 0.3, row, Rgb::ONE);
+        scene.spheres.push(eye + 0.1, 0.4, row, Rgb::ONE);
+        for integrator in [Integrator::Path, Integrator::Whitted { shadow_samples: 2 }] {
+            scene.settings.integrator = integrator;
+            let case = format!("glass {tint} around the camera, {integrator:?}");
+            let found = compare(&case, &scene, &device);
+            assert!(found.unknown_paths * 20 < found.paths, "{case} {found:?}");
+        }
     }
+}
+
+#[test]
+fn paths_of_many_bounces_are_the_processors() {
+    let Some(device) = device() else { return };
+    let mut scene = named("paper-field-20.toml");
+    diffuse(&mut scene);
+    let white = Material::Lambertian { color: Rgb::splat(0.98) };
+    of_materials(&mut scene, &[white]);
+    // Nothing leaves it.
+    scene.spheres.push(eye_of(&scene), 40.0, 0, Rgb::ONE);
+    add_lights(&mut scene);
+    scene.settings.roulette = Roulette::None;
+    scene.settings.depth = Some(45);
+    scene.settings.spp = 2;
+    let found = compare("many bounces", &scene, &device);
+    assert!(found.rays > 40 * found.paths && found.unknown_paths * 5 < found.paths, "{found:?}");
 }
 
 #[test]
@@ -657,12 +688,6 @@ fn what_devices_do_not_do_is_told() {
         not_followed(&world, &scene.settings)
     };
     assert_eq!(told(&|_| ()), None);
-    let glass = Material::Dielectric { ior: 1.5, color: Rgb::ONE };
-    let around = |scene: &mut Scene| {
-        scene.materials[0].material = glass.clone();
-        scene.spheres.push(DVec3::ZERO, 1e3, 0, Rgb::ONE);
-    };
-    assert_eq!(told(&around), Some("glass is around the camera"));
     let whitted = |scene: &mut Scene| {
         add_sun(scene, 5.0);
         scene.settings.integrator = Integrator::Whitted { shadow_samples: 1025 };

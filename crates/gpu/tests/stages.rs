@@ -100,7 +100,7 @@ fn generated_samples_and_rays_are_the_processors() {
                 let seeds = start.positions.seeds.to_array();
                 for sample in 0..SAMPLES.len() {
                     let own = [positions[sample], seeds[sample]];
-                    assert_eq!(found.sequences[first + sample], own, "{place} {sample}");
+                    assert_eq!(found.sequences[first + sample][..2], own, "{place} {sample}");
                 }
             }
         },

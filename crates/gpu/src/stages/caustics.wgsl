@@ -4,8 +4,8 @@
 // rows after those; `second_segments.wgsl` replaces those that are not occluded. The samples of a path are linked in
 // order.
 
-// `ALTERNATE` of `sampling/sampler.rs`, its lower half.
-const ALTERNATE: u32 = 0xfe94f82bu;
+// `ALTERNATE` of `sampling/sampler.rs`.
+const ALTERNATE: vec2<u32> = vec2<u32>(0xfe94f82bu, 0x3c6ef372u);
 
 // The next point of Roberts' sequence in the unit square: `sampling/warp.rs`.
 fn next_in_square(u: vec2<f32>) -> vec2<f32> {
@@ -47,7 +47,10 @@ fn sample_caustics(
     if params.bounce + 2u > job.depth {
         return true;
     }
-    let numbers = draw4(Sequence(sequence.position, sequence.seed ^ ALTERNATE), lights_set(params.bounce));
+    var alternate = sequence;
+    alternate.seed ^= ALTERNATE.x;
+    alternate.upper ^= ALTERNATE.y;
+    let numbers = draw4(alternate, lights_set(params.bounce));
     let at = Receiver((*surface).point, (*surface).facing, (*surface).hit);
     var draw = begin_caustics(at, light_draw(numbers));
     var place = numbers.xy;

@@ -3,10 +3,25 @@
 // Spheres that a path may be in; in more it is unknown.
 const NESTING: u32 = 8u;
 
-fn clear_interiors(path: u32) {
+// The spheres that contain the origin of a camera ray; on a surface its direction decides. False if they are too many.
+fn begin_interiors(path: u32) -> bool {
     for (var slot = 0u; slot < NESTING; slot++) {
         interiors[NESTING * path + slot] = MISS;
     }
+    let origin = vec3<f64>(ray_origin(path));
+    let direction = vec3<f64>(ray_direction(path));
+    for (var place = 0u; place < job.camera_glass; place++) {
+        let sphere = light_word(job.camera_glass_rows, place);
+        let bits = sphere_row(sphere);
+        let radius = f64(bitcast<f32>(bits.w));
+        let offset = kept3(origin - vec3<f64>(bitcast<vec3<f32>>(bits.xyz)));
+        let outside = kept(dot_unfused(offset, offset) - kept(radius * radius));
+        let inward = dot_unfused(offset, direction) < 0.0;
+        if (outside < 0.0 || (outside == 0.0 && inward)) && !enter_sphere(path, sphere) {
+            return false;
+        }
+    }
+    return true;
 }
 
 fn ior_of(sphere: u32) -> f32 {

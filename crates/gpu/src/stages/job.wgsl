@@ -51,6 +51,9 @@ struct Job {
     top: u32,
     // Where the rows of specular spheres and their emitters begin.
     caster_rows: u32,
+    // Glass spheres in which camera rays may start, and where their rows are.
+    camera_glass: u32,
+    camera_glass_rows: u32,
     // Whitted ray tracing: samples of each light with extent, and of all lights and the sky.
     shadow_samples: u32,
     all_shadows: u32,

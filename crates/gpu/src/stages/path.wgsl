@@ -19,8 +19,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if CAUSTICS {
         begin_chain(path);
     }
-    if params.bounce == 0u && has(NESTED_GLASS) {
-        clear_interiors(path);
+    if params.bounce == 0u && has(NESTED_GLASS) && !begin_interiors(path) {
+        paths[path].w |= 1u;
+        return;
     }
     let state = states[path];
     var surface = surface_of(path, found[path], Entry(state.inside != 0u, state.entry));
@@ -34,7 +35,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if known {
         kind = material_kind(material_at(surface.hit));
     }
-    if !known || (!cut && lights_set(params.bounce) >= SETS) {
+    if !known {
         paths[path].w |= 1u;
         return;
     }

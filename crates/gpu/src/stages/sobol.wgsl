@@ -5,7 +5,7 @@
 
 const INDEX_BITS: u32 = 16u;
 
-// Sets of dimensions; a path that needs more is unknown.
+// Sets of dimensions; the numbers of further ones are independent.
 const SETS: u32 = 64u;
 
 // Burley's constants, which distinguish the four dimensions of a set.
@@ -14,8 +14,16 @@ const DIMENSIONS: vec4<u32> = vec4<u32>(0x912f69bau, 0x174f18abu, 0x691e72cau, 0
 // The position of a path in the sequence of its seed.
 struct Sequence {
     position: u32,
+    // The lower half of the path's key.
     seed: u32,
+    // The upper half.
+    upper: u32,
+    // The number of the sample among those of the key.
+    index: u32,
 }
+
+// `BEYOND` of `sampling/sampler.rs`.
+const BEYOND: vec2<u32> = vec2<u32>(0xde82ef95u, 0xd1342543u);
 
 fn hash_word(word: u32) -> u32 {
     var n = word ^ 0xe6fe3bebu;
@@ -49,11 +57,39 @@ fn shuffle(index: u32, seed: u32) -> u32 {
 fn start_sample(seed: vec2<u32>, x: u32, y: u32, index: u32) -> Sequence {
     let pixel = stream(seed, vec2<u32>(x, y));
     let key = stream(pixel, vec2<u32>(index >> INDEX_BITS, 0u));
-    return Sequence(shuffle(index & ((1u << INDEX_BITS) - 1u), key.x), key.x);
+    let place = index & ((1u << INDEX_BITS) - 1u);
+    return Sequence(shuffle(place, key.x), key.x, key.y, place);
+}
+
+fn rotated(x: u32, by: u32) -> u32 {
+    return (x << by) | (x >> (32u - by));
+}
+
+// Four numbers of a generator of its own: xoshiro128++ (Blackman and Vigna, "Scrambled Linear Pseudorandom Number
+// Generators", TOMS 2021), whose state comes from SplitMix64.
+fn independent(key: vec2<u32>, dimensions: u32) -> vec4<f32> {
+    let first = sum64(stream(key, vec2<u32>(dimensions, 0u)), GOLDEN_GAMMA);
+    var state = vec4<u32>(mix(first), mix(sum64(first, GOLDEN_GAMMA)));
+    var bits: vec4<u32>;
+    for (var i = 0u; i < 4u; i++) {
+        bits[i] = rotated(state.x + state.w, 7u) + state.x;
+        let shifted = state.y << 9u;
+        state.z ^= state.x;
+        state.w ^= state.y;
+        state.y ^= state.z;
+        state.x ^= state.w;
+        state.z ^= shifted;
+        state.w = rotated(state.w, 11u);
+    }
+    return vec4<f32>(bits >> vec4<u32>(8u)) * 0x1p-24f;
 }
 
 // Four numbers in [0, 1) of a set of dimensions.
 fn draw4(sequence: Sequence, dimensions: u32) -> vec4<f32> {
+    if dimensions >= SETS {
+        let key = stream(vec2<u32>(sequence.seed, sequence.upper) ^ BEYOND, vec2<u32>(sequence.index, 0u));
+        return independent(key, dimensions);
+    }
     var sum = vec4<u32>(0u);
     for (var nibble = 0u; nibble < 4u; nibble++) {
         let value = (sequence.position >> (4u * nibble)) & 15u;

@@ -50,7 +50,7 @@ fn split_pair(path: u32, sample: ShadowSample) -> vec2<f32> {
     let mask = (1u << INDEX_BITS) - 1u;
     let position = (index & mask) * sample.count + sample.index;
     let seed = stream(own, vec2<u32>(position >> INDEX_BITS, 0u)).x;
-    return draw4(Sequence(shuffle(position & mask, seed), seed), 0u).xy;
+    return draw4(Sequence(shuffle(position & mask, seed), seed, 0u, 0u), 0u).xy;
 }
 
 // The light of a ray that leaves the scene: there is no MIS weight.
@@ -162,8 +162,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if STEP == SHADOWS {
         clear_shadow_rays(path);
     }
-    if STEP == LIGHT && params.bounce == 0u && has(NESTED_GLASS) {
-        clear_interiors(path);
+    if STEP == LIGHT && params.bounce == 0u && has(NESTED_GLASS) && !begin_interiors(path) {
+        paths[path].w |= 1u;
     }
     if (paths[path].w & 1u) != 0u {
         return;
@@ -180,8 +180,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if surface.known {
         kind = material_kind(material_at(surface.hit));
     }
-    let cut = params.bounce == job.depth;
-    if !surface.known || (!cut && lights_set(params.bounce) >= SETS) {
+    if !surface.known {
         paths[path].w |= 1u;
         return;
     }

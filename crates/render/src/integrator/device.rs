@@ -5,7 +5,6 @@ use super::elisions::Elisions;
 use super::roulette::roulette_threshold;
 use super::whitted;
 use crate::scene::{Integrator, Rgb, Roulette, SamplerKind};
-use crate::shade::MaterialKind;
 use crate::world::{
     DeviceCaustics, DeviceIntegration, DeviceJob, DeviceLights, DeviceRoulette, DeviceSky, Picture,
     Radiance, World,
@@ -105,10 +104,7 @@ fn unsupported(job: &Job) -> Option<&'static str> {
     if paths && job.settings.caustics && world.caustic_casters.is_deep() {
         return Some("the tree of specular spheres is deep");
     }
-    if !world.features.has(MaterialKind::Dielectric) {
-        return None;
-    }
-    (!world.features.glass_at_camera.is_empty()).then_some("glass is around the camera")
+    None
 }
 
 /// Returns the sky; a picture counts as black.
