@@ -11,7 +11,7 @@ const PATIENCE: Duration = Duration::from_secs(120);
 
 /// Storage buffers that the kernels of queries bind at once, and those of paths.
 const STORAGE_BUFFERS: u32 = 8;
-const PATH_BUFFERS: u32 = 24;
+const PATH_BUFFERS: u32 = 23;
 
 /// What kernels of paths need beside: double precision, and its bits as integers.
 const FOR_PATHS: wgpu::Features = wgpu::Features::SHADER_F64.union(wgpu::Features::SHADER_INT64);

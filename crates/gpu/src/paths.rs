@@ -274,7 +274,7 @@ impl JobPaths {
                     buffers.push(pixels);
                     Kernel::Whitted(step)
                 } else {
-                    buffers.extend([&columns.caustics.chains, &columns.caustics.seconds]);
+                    buffers.push(&columns.caustics.chains);
                     Kernel::Path { caustics: self.needs.caustics }
                 }
             }
@@ -284,6 +284,13 @@ impl JobPaths {
                 buffers.extend([shadow_rays, shadow_found, &shadows.queue]);
                 size = Size::Queue(&shadows.queue);
                 self.tree.queued_hits(true)
+            }
+            Stage::Caustics => {
+                buffers.extend(self.surface_buffers(columns));
+                buffers.extend([states, paths, &shadows.rays, &shadows.lights]);
+                buffers.extend([queue, &shadows.queue, lights]);
+                buffers.extend([&columns.caustics.chains, &columns.caustics.seconds]);
+                Kernel::Caustics
             }
             Stage::SecondSegments => {
                 buffers.extend([numbers, shadow_rays, shadow_found, paths, queue]);
@@ -335,6 +342,9 @@ impl JobPaths {
                 columns.set_bounce(&mut work, place);
                 columns.clear(&mut work, &columns.queues[1 - queue]);
                 self.stage(&mut work, Stage::FirstHits, columns, queue)?;
+                if self.needs.caustics {
+                    self.stage(&mut work, Stage::Caustics, columns, queue)?;
+                }
                 self.stage(&mut work, surfaces, columns, queue)?;
                 if has_shadows {
                     self.stage(&mut work, Stage::ShadowHits, columns, queue)?;
@@ -444,6 +454,8 @@ enum Stage {
     Whitted(WhittedStep),
     /// Whether shadow rays hit anything.
     ShadowHits,
+    /// Caustic samples.
+    Caustics,
     /// Second segments of caustic samples.
     SecondSegments,
     /// Light of shadow rays.

@@ -58,6 +58,8 @@ pub struct Probe {
     pub subnormals: Subnormals,
     /// True if `x * y + z` is fused, sometimes or always, where nobody asks for it.
     pub contracts: bool,
+    /// True if kernels of paths leave sums of products to `fma`, and do not compute them in double precision.
+    pub fuses: bool,
     /// Whether double precision gives the processor's results; `None` if kernels have none.
     pub doubles: Option<bool>,
     /// Operands that were tried.
@@ -94,13 +96,17 @@ impl Probe {
 /// Tests the arithmetic of a device.
 pub(crate) fn run(device: &Device) -> Result<Probe, DeviceError> {
     let operands = operands();
-    let results = compute(device, &operands)?;
-    let doubles = device.has_doubles().then(|| are_like_the_processor(device)).transpose()?;
-    Ok(Probe { doubles, ..judge(&operands, &results) })
+    let mut probe = judge(&operands, &compute(device, &operands)?);
+    if device.has_doubles() {
+        probe.fuses = probe.fma == Fma::Fused && are_like_the_processor(device, true)?;
+        probe.doubles = Some(probe.fuses || are_like_the_processor(device, false)?);
+    }
+    Ok(probe)
 }
 
-/// Returns whether double precision, and what kernels make of it, gives the processor's results.
-fn are_like_the_processor(device: &Device) -> Result<bool, DeviceError> {
+/// Returns whether double precision, and what kernels make of it, gives the processor's results; sums of products are those of
+/// `fma` if `fused`.
+fn are_like_the_processor(device: &Device, fused: bool) -> Result<bool, DeviceError> {
     let operands = double_operands();
     let params = Params { count: operands.len() as u32, ..Params::default() };
     let bytes = (size_of::<[f64; DOUBLES]>() * operands.len()) as u64;
@@ -112,7 +118,7 @@ fn are_like_the_processor(device: &Device) -> Result<bool, DeviceError> {
     let output = device.buffer("results", bytes, output)?;
     let copy = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
     let copy = device.buffer("results to read", bytes, copy)?;
-    device.run(Kernel::Doubles, &[&numbers, &input, &output], operands.len())?;
+    device.run(Kernel::Doubles { fused }, &[&numbers, &input, &output], operands.len())?;
     device.copy(&output, &copy, bytes);
     let mut results = vec![[0.0; DOUBLES]; operands.len()];
     device.read(&copy, bytes, |view| {
@@ -307,5 +313,19 @@ mod tests {
         assert!(fused.contracts && fused.fma == Fma::Fused);
         let wild = changed(&|operand, row| row[4] += operand[2]);
         assert_eq!(wild.fma, Fma::Mixed);
+    }
+
+    #[test]
+    fn sums_of_products_are_left_to_the_device_only_if_they_are_the_processors() {
+        let Ok(device) = Device::best(true) else { return };
+        if !device.has_doubles() {
+            return;
+        }
+        let like = [false, true].map(|fused| are_like_the_processor(&device, fused));
+        let [own, fused] = like.map(|like| like.unwrap_or_default());
+        let probe = device.probe();
+        // Software rounds `fma` twice.
+        assert_eq!((probe.fuses, fused), (probe.fma == Fma::Fused, probe.fma == Fma::Fused));
+        assert_eq!(probe.doubles, Some(own || fused));
     }
 }

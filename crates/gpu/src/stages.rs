@@ -10,16 +10,25 @@ const QUEUED_RAYS: &str = concat!(
 );
 
 const PARAMS: &str = include_str!("stages/params.wgsl");
+const ARITHMETIC: &str = include_str!("stages/arithmetic.wgsl");
 const SPHERES: &str = include_str!("stages/spheres.wgsl");
 const RAYS: &str = include_str!("stages/rays.wgsl");
 const SPHERE_TERMS: &str = include_str!("stages/sphere_terms.wgsl");
 const PATH_STATE: &str = include_str!("stages/path_state.wgsl");
 const QUEUE: &str = include_str!("stages/queue.wgsl");
 const SHADOW_RAYS: &str = include_str!("stages/shadow_rays.wgsl");
+const SHADOW_SEGMENTS: &str = include_str!("stages/shadow_segments.wgsl");
+const MATERIALS: &str = include_str!("stages/materials.wgsl");
+const SURFACES: &str = include_str!("stages/surface.wgsl");
+const BASIS: &str = include_str!("stages/basis.wgsl");
+const LIGHT_ROWS: &str = include_str!("stages/lights.wgsl");
+const LIGHT_TREE: &str = include_str!("stages/light_tree.wgsl");
+const SPHERE_LIGHT: &str = include_str!("stages/sphere_light.wgsl");
+const SUN: &str = include_str!("stages/sun.wgsl");
 /// What paths need of a job, its arithmetic and its samples.
 const JOB: [&str; 8] = [
     PARAMS,
-    include_str!("stages/arithmetic.wgsl"),
+    ARITHMETIC,
     SPHERE_TERMS,
     include_str!("stages/job.wgsl"),
     include_str!("stages/hash.wgsl"),
@@ -30,9 +39,9 @@ const JOB: [&str; 8] = [
 /// Surfaces, and what is around all of them.
 const SURFACE: [&str; 7] = [
     SPHERES,
-    include_str!("stages/materials.wgsl"),
-    include_str!("stages/surface.wgsl"),
-    include_str!("stages/basis.wgsl"),
+    MATERIALS,
+    SURFACES,
+    BASIS,
     include_str!("stages/angles.wgsl"),
     include_str!("stages/sky.wgsl"),
     include_str!("stages/environment.wgsl"),
@@ -49,27 +58,29 @@ const BSDFS: [&str; 7] = [
 ];
 /// Light samples.
 const LIGHTS: [&str; 7] = [
-    include_str!("stages/lights.wgsl"),
-    include_str!("stages/light_tree.wgsl"),
-    include_str!("stages/sphere_light.wgsl"),
+    LIGHT_ROWS,
+    LIGHT_TREE,
+    SPHERE_LIGHT,
     include_str!("stages/point_light.wgsl"),
-    include_str!("stages/sun.wgsl"),
+    SUN,
     include_str!("stages/sky_light.wgsl"),
     include_str!("stages/direct_light.wgsl"),
 ];
 /// What bounces of all integrators have in common.
-const BOUNCE: [&str; 8] = [
+const BOUNCE: [&str; 10] = [
     PATH_STATE,
     QUEUE,
     RAYS,
     SHADOW_RAYS,
+    include_str!("stages/path_bindings.wgsl"),
+    SHADOW_SEGMENTS,
     include_str!("stages/path_columns.wgsl"),
     include_str!("stages/interior.wgsl"),
     include_str!("stages/glass.wgsl"),
     include_str!("stages/roulette.wgsl"),
 ];
-/// Caustic samples.
-const CAUSTICS: [&str; 8] = [
+/// Caustic samples and MIS weights.
+const CAUSTICS: [&str; 7] = [
     include_str!("stages/casters.wgsl"),
     include_str!("stages/caster_tree.wgsl"),
     include_str!("stages/caustic_choice.wgsl"),
@@ -77,7 +88,6 @@ const CAUSTICS: [&str; 8] = [
     include_str!("stages/connection.wgsl"),
     include_str!("stages/caustic_sample.wgsl"),
     include_str!("stages/chain.wgsl"),
-    include_str!("stages/caustics.wgsl"),
 ];
 /// Bounces of path tracing.
 const PATH: [&str; 4] = [
@@ -95,15 +105,17 @@ pub(crate) enum Kernel {
     Hits { any: bool, counts: bool, cut: bool, queued: bool },
     /// The same in double precision, for the rays whose answer is not known.
     HitsAgain { any: bool, cut: bool, queued: bool },
-    /// The test of double precision.
-    Doubles,
+    /// The test of double precision, and of what kernels make of it; sums of products are those of `fma` if `fused`.
+    Doubles { fused: bool },
     /// Camera rays.
     Generate,
     /// Surfaces and shadow rays of ambient occlusion.
     Occlusion,
     /// Light of shadow rays.
     Shadows,
-    /// Second segments of caustic samples.
+    /// Caustic samples.
+    Caustics,
+    /// Their second segments.
     SecondSegments,
     /// A bounce of paths, on which surfaces sample `caustics` or not.
     Path { caustics: bool },
@@ -126,7 +138,7 @@ pub(crate) enum WhittedStep {
 
 impl Kernel {
     /// The number of kernels.
-    pub(crate) const COUNT: usize = 35;
+    pub(crate) const COUNT: usize = 37;
 
     /// Returns its place among all kernels.
     pub(crate) fn place(self) -> usize {
@@ -138,10 +150,12 @@ impl Kernel {
             Self::Occlusion => 17,
             Self::Shadows => 18,
             Self::Path { caustics: false } => 19,
-            Self::Doubles => 20,
+            Self::Doubles { fused: false } => 20,
+            Self::Doubles { fused: true } => 36,
             Self::Film => 21,
             Self::SecondSegments => 33,
             Self::Path { caustics: true } => 34,
+            Self::Caustics => 35,
             Self::Whitted(step) => 22 + step as usize,
             Self::HitsAgain { any, cut, queued } => {
                 25 + [any, cut, queued].iter().fold(0, |place, &is| 2 * place + usize::from(is))
@@ -157,16 +171,27 @@ impl Kernel {
     /// Compiles it.
     pub(crate) fn compile(self, device: &Device) -> Result<wgpu::ComputePipeline, DeviceError> {
         let (name, files) = self.files();
-        let constants: &[(&str, f64)] = match self {
-            Self::Hits { any, counts, cut, .. } => &[("ANY", any), ("COUNT", counts), ("CUT", cut)]
-                .map(|(name, is)| (name, u8::from(is).into())),
-            Self::HitsAgain { any, cut, .. } => &[("ANY", any), ("AGAIN", true), ("CUT", cut)]
-                .map(|(name, is)| (name, u8::from(is).into())),
-            Self::Whitted(step) => &[("STEP", f64::from(step as u8))],
-            Self::Path { caustics } => &[("CAUSTICS", u8::from(caustics).into())],
-            _ => &[],
+        let mut constants = match self {
+            Self::Hits { any, counts, cut, .. } => {
+                vec![("ANY", any.into()), ("COUNT", counts.into()), ("CUT", cut.into())]
+            }
+            Self::HitsAgain { any, cut, .. } => {
+                vec![("ANY", any.into()), ("AGAIN", 1), ("CUT", cut.into())]
+            }
+            Self::Whitted(step) => vec![("STEP", step as u8)],
+            Self::Path { caustics } => vec![("CAUSTICS", caustics.into())],
+            _ => Vec::new(),
         };
-        device.kernel((name, &files.concat()), constants)
+        if files.contains(&ARITHMETIC) {
+            let fused = match self {
+                Self::Doubles { fused } => fused,
+                _ => device.probe().fuses,
+            };
+            constants.push(("FUSED", fused.into()));
+        }
+        let constants: Vec<_> =
+            constants.into_iter().map(|(name, value)| (name, f64::from(value))).collect();
+        device.kernel((name, &files.concat()), &constants)
     }
 
     /// Returns its name, and its files.
@@ -180,14 +205,12 @@ impl Kernel {
             }
             Self::HitsAgain { queued, .. } => {
                 let rows = if queued { QUEUED_RAYS } else { include_str!("stages/all_rows.wgsl") };
-                let arithmetic = include_str!("stages/arithmetic.wgsl");
                 let test = include_str!("stages/test_sphere_again.wgsl");
                 let hits = include_str!("hits.wgsl");
-                ("hits again", vec![PARAMS, arithmetic, SPHERE_TERMS, rows, SPHERES, hits, test])
+                ("hits again", vec![PARAMS, ARITHMETIC, SPHERE_TERMS, rows, SPHERES, hits, test])
             }
-            Self::Doubles => {
-                let arithmetic = include_str!("stages/arithmetic.wgsl");
-                ("doubles", vec![PARAMS, arithmetic, include_str!("doubles.wgsl")])
+            Self::Doubles { .. } => {
+                ("doubles", vec![PARAMS, ARITHMETIC, include_str!("doubles.wgsl")])
             }
             Self::Generate => {
                 let camera = include_str!("stages/camera.wgsl");
@@ -202,10 +225,20 @@ impl Kernel {
                 let shadows = include_str!("stages/shadow_queue.wgsl");
                 ("shadow_queue", vec![PARAMS, QUEUE, RAYS, shadows])
             }
+            Self::Caustics => {
+                let surface = [SPHERES, MATERIALS, SURFACES, BASIS];
+                let lights = [LIGHT_ROWS, LIGHT_TREE, SPHERE_LIGHT, SUN];
+                let rays = [PATH_STATE, QUEUE, RAYS, SHADOW_RAYS, SHADOW_SEGMENTS];
+                let own = [
+                    include_str!("stages/caustic_bindings.wgsl"),
+                    include_str!("stages/caustics.wgsl"),
+                ];
+                ("caustics", of(&[&JOB, &surface, &BSDFS, &lights, &rays, &CAUSTICS, &own]))
+            }
             Self::SecondSegments => {
                 let files = [
                     PARAMS,
-                    include_str!("stages/arithmetic.wgsl"),
+                    ARITHMETIC,
                     SPHERE_TERMS,
                     include_str!("stages/job.wgsl"),
                     include_str!("stages/ground.wgsl"),
@@ -216,10 +249,7 @@ impl Kernel {
                 ];
                 ("second_segments", files.to_vec())
             }
-            Self::Film => {
-                let arithmetic = include_str!("stages/arithmetic.wgsl");
-                ("film", vec![PARAMS, arithmetic, include_str!("stages/film.wgsl")])
-            }
+            Self::Film => ("film", vec![PARAMS, ARITHMETIC, include_str!("stages/film.wgsl")]),
             Self::Whitted(_) => {
                 let whitted = include_str!("stages/whitted.wgsl");
                 ("whitted", of(&[&JOB, &SURFACE, &BSDFS, &LIGHTS, &BOUNCE, &[whitted]]))

@@ -33,8 +33,14 @@ fn root(x: f32) -> f32 {
     return keep(f32(sqrt(f64(x))));
 }
 
+// True if the device's `fma` rounds once, as a probe has found.
+override FUSED: bool = false;
+
 // x * y + z, rounded once.
 fn mul_add(x: f32, y: f32, z: f32) -> f32 {
+    if FUSED {
+        return keep(fma(x, y, z));
+    }
     // The product is exact. What rounding takes from the sum is found by Knuth's TwoSum.
     let product = kept(f64(x) * f64(y));
     let addend = f64(z);

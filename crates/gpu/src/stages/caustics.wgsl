@@ -1,7 +1,8 @@
 // Caustic samples of surfaces that are not specular: `integrator/caustics/mod.rs`.
 //
-// Their shadow rays have two segments. The first, from surfaces to spheres, are traced with all other shadow rays, in
-// rows after those; `second_segments.wgsl` replaces those that are not occluded. The samples of a path are linked in
+// This kernel comes before that of the bounce, although the light of its samples is added after all other light of a
+// path. Their shadow rays have two segments. The first, from surfaces to spheres, are traced with all other shadow rays,
+// in rows after those; `second_segments.wgsl` replaces those that are not occluded. The samples of a path are linked in
 // order.
 
 // `ALTERNATE` of `sampling/sampler.rs`.
@@ -35,19 +36,12 @@ fn caustic_color(sphere: u32, emitter: u32, path: u32, incidence: f32) -> vec3<f
 }
 
 // Samples the caustics at a surface. False if the device has no room for a sample.
-fn sample_caustics(
-    path: u32,
-    surface: ptr<function, Surface>,
-    bsdf: ptr<function, Bsdf>,
-    basis: Basis,
-    outgoing: vec3<f32>,
-    throughput: vec3<f32>,
-    sequence: Sequence,
-) -> bool {
-    if params.bounce + 2u > job.depth {
-        return true;
-    }
-    var alternate = sequence;
+fn sample_caustics(path: u32, surface: ptr<function, Surface>, bsdf: ptr<function, Bsdf>) -> bool {
+    let throughput = states[path].throughput;
+    let basis = basis_about((*surface).facing);
+    var outgoing = to_local(basis, -ray_direction(path));
+    outgoing.z = max(outgoing.z, 0x1p-23f);
+    var alternate = sequences[path];
     alternate.seed ^= ALTERNATE.x;
     alternate.upper ^= ALTERNATE.y;
     let numbers = draw4(alternate, lights_set(params.bounce));
@@ -106,4 +100,28 @@ fn sample_caustics(
     }
     // Not reached: validators ask for it.
     return true;
+}
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    let path = row_of(id.x);
+    if path == NO_ROW {
+        return;
+    }
+    begin_chain(path);
+    if params.bounce + 2u > job.depth || (paths[path].w & 1u) != 0u || !has(LIGHTS) {
+        return;
+    }
+    let state = states[path];
+    var surface = surface_of(path, found[path], Entry(state.inside != 0u, state.entry));
+    if !surface.known || surface.hit == MISS || surface.inside {
+        return;
+    }
+    if material_kind(material_at(surface.hit)) == DIELECTRIC {
+        return;
+    }
+    var bsdf = bsdf_at(surface.hit);
+    if !is_delta(&bsdf) && !sample_caustics(path, &surface, &bsdf) {
+        paths[path].w |= 1u;
+    }
 }

@@ -5,15 +5,15 @@ fn meets_glass_from_outside(path: u32, surface: ptr<function, Surface>, outside:
     return outside > 0.0 && dot_unfused((*surface).normal, vec3<f64>(ray_direction(path))) < 0.0;
 }
 
-// Writes the shadow rays toward the lights that glass mirrors: on the outside, or once on the inside of glass that stands
-// alone, from which they leave at the next interface. False if the device does not know which.
-fn mirror_lights_by_glass(
+// The direction that glass mirrors: on the outside, or once on the inside of glass that stands alone, which rays leave at
+// the next interface.
+fn glass_mirror(
     path: u32,
     surface: ptr<function, Surface>,
     outside: f32,
     from_outside: bool,
     state: PathState,
-) -> bool {
+) -> Mirror {
     let hit = (*surface).hit;
     let color = keep3(material_color(material_at(hit), 2u) * color_at(hit));
     let tint = keep3(state.throughput * color);
@@ -24,10 +24,11 @@ fn mirror_lights_by_glass(
         let cosine = -dot_fused(given, normal);
         let toward = normalized(keep3(given + scaled(normal, keep(cosine + cosine))));
         let passage = fresnel_dielectric(clamp(f64(cosine), 0.0lf, 1.0lf), f64(outside) / ior);
-        return mirror_lights(path, surface, toward, scaled(tint, f32(passage.reflected)), state.previous);
+        let factor = scaled(tint, f32(passage.reflected));
+        return Mirror((*surface).point, hit, toward, factor, state.previous);
     }
     if caster_of(hit) == MISS || params.bounce + 2u > job.depth {
-        return true;
+        return no_mirror();
     }
     let unscaled = vec3<f64>(given);
     let direction = kept3(unscaled * kept(inverse_length(unscaled)));
@@ -41,11 +42,10 @@ fn mirror_lights_by_glass(
     let bend = kept(passage.refracted - kept(eta * cosine));
     let leaving = kept3(kept3(mirrored * eta) + kept3(kept3(normal + across) * bend));
     let share = kept(passage.reflected * kept(1.0lf - passage.reflected));
-    var far_side = *surface;
-    far_side.point = vec3<f32>(kept3(vec3<f64>((*surface).point) + kept3(across * (*surface).radius)));
+    let far_side = vec3<f32>(kept3(vec3<f64>((*surface).point) + kept3(across * (*surface).radius)));
     let factor = scaled(keep3(tint * color), f32(share));
     // Caustic samples do not find this light.
-    return mirror_lights(path, &far_side, normalized(vec3<f32>(leaving)), factor, CAMERA);
+    return Mirror(far_side, hit, normalized(vec3<f32>(leaving)), factor, CAMERA);
 }
 
 // Marks a path that has left the glass by a way on which its light was sampled.

@@ -89,22 +89,7 @@ fn light_probability(point: vec3<f32>, normal: vec3<f32>, light: u32) -> f32 {
     return select(0.0, 1.0, has(LIGHTS));
 }
 
-fn sample_light(point: vec3<f32>, normal: vec3<f32>, own: u32, numbers: vec4<f32>) -> LightSample {
-    let choice = choose_light(point, normal, light_draw(numbers));
-    let u = numbers.xy;
-    var sample = no_light();
-    if choice.light < job.emitters {
-        sample = sample_sphere_light(point, own, choice.light, u);
-    } else if choice.light < job.emitters + job.points {
-        sample = sample_point_light(point, choice.light - job.emitters);
-    } else if choice.light < job.emitters + job.points + job.suns {
-        sample = sample_sun(choice.light - job.emitters - job.points, u);
-    } else {
-        sample = sample_sky(choice.light - job.emitters - job.points - job.suns, u);
-    }
-    if has(LIGHT_TREE) || has(LIGHT_TABLE) {
-        sample.weight = quotients(sample.weight, choice.probability);
-        sample.pdf = keep(sample.pdf * choice.probability);
-    }
-    return sample;
+fn power_heuristic(found: f32, other: f32) -> f32 {
+    let ratio = quotient(other, found);
+    return quotient(1.0, mul_add(ratio, ratio, 1.0));
 }

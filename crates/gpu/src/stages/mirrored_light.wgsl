@@ -2,65 +2,88 @@
 // rays is that of its light sample; those of suns follow, and one of an emissive sphere: of those in a direction, the
 // nearest occludes the others.
 
-// Writes the shadow rays toward the lights in a mirrored direction, which bring this part of their radiance, beside
-// caustic samples at the bounce before, which was this one. False if the device does not know which.
-fn mirror_lights(
-    path: u32,
-    surface: ptr<function, Surface>,
+// A direction that a smooth surface mirrors.
+struct Mirror {
+    // Where the mirrored ray leaves the surface, which is that of a sphere or the ground.
+    point: vec3<f32>,
+    hit: u32,
     toward: vec3<f32>,
+    // What the path carries of light from there; 0 if there is no mirror.
     factor: vec3<f32>,
+    // The bounce before.
     previous: u32,
-) -> bool {
-    for (var sun = 0u; sun < job.suns; sun++) {
-        if !sun_is_toward(sun, toward) {
-            continue;
-        }
-        var light = keep3(factor * sun_radiance(sun));
-        if CAUSTICS {
-            light = scaled(light, mirrored_weight(path, (*surface).hit, previous, emitter_of_sun(sun), toward, toward));
-        }
-        if 0.0 < greatest_of(light) {
-            write_shadow_ray(path, 1u + sun, surface, toward, light, INFINITELY_FAR, MISS);
-        }
-    }
+}
+
+fn no_mirror() -> Mirror {
+    let none = vec3<f32>(0.0);
+    return Mirror(none, MISS, none, none, CAMERA);
+}
+
+// Writes the shadow rays toward the lights in a mirrored direction. False if the device does not know which.
+fn mirror_lights(path: u32, mirror: Mirror) -> bool {
     var nearest = INFINITELY_FAR;
     var goal = MISS;
     var nearest_light = vec3<f32>(0.0);
-    for (var emitter = 0u; emitter < job.emitters; emitter++) {
-        let sphere = light_rows[emitter].w;
-        if sphere == (*surface).hit || !is_outside((*surface).point, sphere) {
-            continue;
+    for (var light = 0u; light < job.suns + job.emitters; light++) {
+        let is_sun = light < job.suns;
+        var radiance = vec3<f32>(0.0);
+        var emitter = light - job.suns;
+        var end = mirror.toward;
+        var sphere = MISS;
+        var t = INFINITELY_FAR;
+        if is_sun {
+            if !sun_is_toward(light, mirror.toward) {
+                continue;
+            }
+            radiance = sun_radiance(light);
+            emitter = emitter_of_sun(light);
+        } else {
+            sphere = light_rows[emitter].w;
+            if sphere == mirror.hit || !is_outside(mirror.point, sphere) {
+                continue;
+            }
+            let ahead = sphere_ahead(mirror.point, mirror.toward, sphere);
+            if !ahead.known {
+                return false;
+            }
+            if !ahead.meets {
+                continue;
+            }
+            radiance = light_vector(emitter);
+            t = ahead.t;
+            end = keep3(mirror.point + scaled(mirror.toward, f32(t)));
         }
-        let ahead = sphere_ahead((*surface).point, toward, sphere);
-        if !ahead.known {
-            return false;
-        }
-        if !ahead.meets {
-            continue;
-        }
-        var light = keep3(factor * light_vector(emitter));
+        var carried = keep3(mirror.factor * radiance);
         if CAUSTICS {
-            let end = keep3((*surface).point + scaled(toward, f32(ahead.t)));
-            light = scaled(light, mirrored_weight(path, (*surface).hit, previous, emitter, end, toward));
+            carried = scaled(carried, mirrored_weight(path, mirror.hit, mirror.previous, emitter, end, mirror.toward));
         }
-        if !(0.0 < greatest_of(light)) {
+        if !(0.0 < greatest_of(carried)) {
+            continue;
+        }
+        if is_sun {
+            write_mirrored(path, 1u + light, mirror, carried, t, MISS);
             continue;
         }
         if goal != MISS {
             // Too close to each other for the order of rounded distances.
-            if abs(ahead.t - nearest) < kept(nearest * 0x1p-20lf) {
+            if abs(t - nearest) < kept(nearest * 0x1p-20lf) {
                 return false;
             }
             paths[path].w += SHADOW_RAY;
         }
-        if ahead.t < nearest {
-            nearest = ahead.t;
+        if t < nearest {
+            nearest = t;
             goal = sphere;
-            nearest_light = light;
+            nearest_light = carried;
         }
     }
     if goal != MISS {
-        write_shadow_ray(path, 1u + job.suns, surface, toward, nearest_light, nearest, goal);
+        write_mirrored(path, 1u + job.suns, mirror, nearest_light, nearest, goal);
     }
     return true;
+}
+
+fn write_mirrored(path: u32, slot: u32, mirror: Mirror, light: vec3<f32>, t: f64, goal: u32) {
+    let row = path + slot * params.count;
+    write_segment(path, row, mirror.point, mirror.toward, light, vec2<u32>(mirror.hit, goal), t);
 }

@@ -1,13 +1,36 @@
 // A bounce of paths: `integrator/path.rs`. Replaces each ray by the next one of its path, and writes its shadow rays
 // with the light that they carry.
 
-// Specular bounces of paths since the last diffuse surface, in four rows, the last of which has the path's first caustic
-// sample; and of each caustic sample its second segment, in three rows, and the next sample of the path.
+// Specular bounces of paths since the last diffuse surface.
 @group(0) @binding(22) var<storage, read_write> chains: array<vec4<u32>>;
-@group(0) @binding(23) var<storage, read_write> seconds: array<vec4<u32>>;
 
-// True if surfaces sample caustics: kernels without them keep less.
+// True if surfaces sample caustics.
 override CAUSTICS: bool = true;
+
+// Writes the shadow ray of a light sample. False if the device does not know it.
+fn sample_direct_light(
+    path: u32,
+    surface: ptr<function, Surface>,
+    bsdf: ptr<function, Bsdf>,
+    basis: Basis,
+    outgoing: vec3<f32>,
+    state: PathState,
+) -> bool {
+    let numbers = draw4(sequences[path], lights_set(params.bounce));
+    var sample = sample_light((*surface).point, (*surface).facing, (*surface).hit, numbers);
+    let incoming = to_local(basis, sample.direction);
+    if !sample.lit || !(0.0 < incoming.z) {
+        return true;
+    }
+    let light = direct_light(bsdf, state.throughput, outgoing, incoming, &sample);
+    if !(0.0 < greatest_of(light)) {
+        return true;
+    }
+    if sample.known && !hides_itself(surface, sample.direction, sample.t) {
+        write_shadow_ray(path, 0u, surface, sample.direction, light, sample.t, sample.goal);
+    }
+    return sample.known;
+}
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -16,9 +39,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     clear_shadow_rays(path);
-    if CAUSTICS {
-        begin_chain(path);
-    }
     if params.bounce == 0u && has(NESTED_GLASS) && !begin_interiors(path) {
         paths[path].w |= 1u;
         return;
@@ -26,78 +46,62 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let state = states[path];
     var surface = surface_of(path, found[path], Entry(state.inside != 0u, state.entry));
     let cut = params.bounce == job.depth;
-    let known = surface.known && (paths[path].w & 1u) == 0u;
-    if known && surface.hit == MISS {
-        add_light(path, keep3(state.throughput * escaped_light(path, state.previous)));
-        return;
-    }
-    var kind = LAMBERTIAN;
-    if known {
-        kind = material_kind(material_at(surface.hit));
-    }
-    if !known {
+    if !surface.known || (paths[path].w & 1u) != 0u {
         paths[path].w |= 1u;
         return;
     }
-    if kind == EMITTER {
-        add_light(path, emitted_light(path, &surface, state));
+    var kind = EMITTER;
+    if surface.hit != MISS {
+        kind = material_kind(material_at(surface.hit));
     }
-    if cut {
+    if kind == EMITTER {
+        add_light(path, reached_light(path, &surface, state));
+    }
+    if cut || surface.hit == MISS {
         return;
     }
     let sequence = sequences[path];
     if CAUSTICS && (kind == CONDUCTOR || kind == DIELECTRIC || kind == PLASTIC) {
         track_chain(path, surface.hit, state.previous);
     }
-    if kind == DIELECTRIC {
-        let outside = index_outside(path, surface.hit);
-        let from_outside = meets_glass_from_outside(path, &surface, outside);
-        if has(MIRRORED_LIGHT) && !mirror_lights_by_glass(path, &surface, outside, from_outside, state) {
+    let is_glass = kind == DIELECTRIC;
+    var bsdf = bsdf_at(surface.hit);
+    let basis = basis_about(surface.facing);
+    var outgoing = to_local(basis, -ray_direction(path));
+    outgoing.z = max(outgoing.z, 0x1p-23f);
+    var outside = 1.0;
+    var from_outside = false;
+    var mirrors = false;
+    var mirrored = no_mirror();
+    if is_glass {
+        outside = index_outside(path, surface.hit);
+        from_outside = meets_glass_from_outside(path, &surface, outside);
+        if has(MIRRORED_LIGHT) {
+            mirrored = glass_mirror(path, &surface, outside, from_outside, state);
+        }
+    } else {
+        if has(LIGHTS) && !is_delta(&bsdf) && !sample_direct_light(path, &surface, &bsdf, basis, outgoing, state) {
             paths[path].w |= 1u;
             return;
         }
+        mirrors = has(MIRRORED_LIGHT) && has_diffuse_base(&bsdf) && !surface.inside;
+        if mirrors {
+            let factor = keep3(state.throughput * bsdf_mirrored(&bsdf, outgoing));
+            let toward = normalized(to_world(basis, mirror(outgoing)));
+            mirrored = Mirror(surface.point, surface.hit, toward, factor, state.previous);
+        }
+    }
+    if 0.0 < greatest_of(mirrored.factor) && !mirror_lights(path, mirrored) {
+        paths[path].w |= 1u;
+        return;
+    }
+    if is_glass {
         if !scatter_glass(path, &surface, outside, draw4(sequence, choices(params.bounce)).z) {
             paths[path].w |= 1u;
         } else if has(MIRRORED_LIGHT) {
             mark_mirrored_light(path, surface.hit, from_outside, state.previous);
         }
         return;
-    }
-    var bsdf = bsdf_at(surface.hit);
-    let basis = basis_about(surface.facing);
-    var outgoing = to_local(basis, -ray_direction(path));
-    outgoing.z = max(outgoing.z, 0x1p-23f);
-    if has(LIGHTS) && !is_delta(&bsdf) {
-        var sample = sample_light(surface.point, surface.facing, surface.hit, draw4(sequence, lights_set(params.bounce)));
-        let incoming = to_local(basis, sample.direction);
-        if sample.lit && 0.0 < incoming.z {
-            let light = direct_light(&bsdf, state.throughput, outgoing, incoming, &sample);
-            if 0.0 < greatest_of(light) {
-                if !sample.known {
-                    paths[path].w |= 1u;
-                    return;
-                }
-                if !hides_itself(&surface, sample.direction, sample.t) {
-                    write_shadow_ray(path, 0u, &surface, sample.direction, light, sample.t, sample.goal);
-                }
-            }
-        }
-    }
-    let mirrors = has(MIRRORED_LIGHT) && has_diffuse_base(&bsdf) && !surface.inside;
-    if mirrors {
-        let factor = keep3(state.throughput * bsdf_mirrored(&bsdf, outgoing));
-        let toward = normalized(to_world(basis, mirror(outgoing)));
-        if 0.0 < greatest_of(factor) && !mirror_lights(path, &surface, toward, factor, state.previous) {
-            paths[path].w |= 1u;
-            return;
-        }
-    }
-    // After all other light of the path.
-    if CAUSTICS && has(LIGHTS) && !is_delta(&bsdf) && !surface.inside {
-        if !sample_caustics(path, &surface, &bsdf, basis, outgoing, state.throughput, sequence) {
-            paths[path].w |= 1u;
-            return;
-        }
     }
     let draw = draw4(sequence, directions(params.bounce));
     var choice = vec2<f32>(0.0);
