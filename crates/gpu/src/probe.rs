@@ -322,7 +322,7 @@ mod tests {
             return;
         }
         let like = [false, true].map(|fused| are_like_the_processor(&device, fused));
-        let [own, fused] = like.map(|like| like.unwrap_or_default());
+        let [own, fused] = like.map(Result::unwrap_or_default);
         let probe = device.probe();
         // Software rounds `fma` twice.
         assert_eq!((probe.fuses, fused), (probe.fma == Fma::Fused, probe.fma == Fma::Fused));
