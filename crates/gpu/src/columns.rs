@@ -3,6 +3,7 @@
 use crate::device::{Device, Work, groups};
 use crate::error::DeviceError;
 use crate::tree::Params;
+use spherule_render::shade::MaterialKind;
 use spherule_render::world::DevicePixel;
 use wgpu::BufferUsages as Usage;
 
@@ -17,6 +18,9 @@ const PARAMS: usize = size_of::<Params>() / size_of::<u32>();
 
 /// Glass spheres that a path may be in, as `interior.wgsl` has them.
 const NESTING: usize = 8;
+
+/// Kinds of materials that have queues: emissive ones count as diffuse.
+const KINDS: usize = 5;
 
 /// Bounces that a device is asked for at once.
 pub(crate) const BOUNCES: usize = 8;
@@ -42,6 +46,8 @@ pub(crate) struct Columns {
     pub(crate) interiors: wgpu::Buffer,
     /// Queues of the paths of a bounce, and of those that go on.
     pub(crate) queues: [wgpu::Buffer; 2],
+    /// Queues of the paths that have hit each kind of material, one after another.
+    pub(crate) kind_queues: wgpu::Buffer,
     pub(crate) head_to_read: wgpu::Buffer,
     /// The head of a queue without rows.
     empty_head: wgpu::Buffer,
@@ -122,6 +128,7 @@ impl Columns {
             samples_to_read: buffer("samples to read", 4 * paths, read)?,
             unsummed: buffer("number of pixels", 1, Usage::STORAGE | Usage::COPY_DST)?,
             queues: [queue("queue", paths)?, queue("queue", paths)?],
+            kind_queues: queue("queues of materials", KINDS * (HEAD + paths) - HEAD)?,
             head_to_read: buffer("count to read", HEAD, read)?,
             interiors: buffer(
                 "glass around paths",
@@ -154,6 +161,21 @@ impl Columns {
         let bytes = self.params.size();
         work.copy((&self.bounces, bytes * place as u64), &self.params, bytes);
         self.clear(work, &self.shadows.queue);
+    }
+
+    /// Returns the number of words from the queue of a kind of material to that of the next.
+    pub(crate) fn kind_stride(&self) -> usize {
+        HEAD + self.capacity[1]
+    }
+
+    /// Returns the place of the queue of a kind of material in bytes.
+    pub(crate) fn kind_offset(&self, kind: MaterialKind) -> u64 {
+        (size_of::<u32>() * self.kind_stride() * kind as usize) as u64
+    }
+
+    /// Empties the queue of a kind of material.
+    pub(crate) fn clear_kind(&self, work: &mut Work, kind: MaterialKind) {
+        work.copy_to(&self.empty_head, (&self.kind_queues, self.kind_offset(kind)));
     }
 
     /// Empties a queue.

@@ -473,6 +473,8 @@ pub(crate) enum Size<'a> {
     Rows(usize),
     /// Those in a queue, as `queue.wgsl` describes it.
     Queue(&'a wgpu::Buffer),
+    /// Those in a queue that begins at a byte of the buffer.
+    QueueAt(&'a wgpu::Buffer, u64),
 }
 
 /// Work for a device, in order.
@@ -503,6 +505,11 @@ impl Work<'_> {
         bytes: u64,
     ) {
         self.encoder.copy_buffer_to_buffer(from, offset, to, 0, bytes);
+    }
+
+    /// Adds a copy of a buffer to another, from an offset on.
+    pub(crate) fn copy_to(&mut self, from: &wgpu::Buffer, (to, offset): (&wgpu::Buffer, u64)) {
+        self.encoder.copy_buffer_to_buffer(from, 0, to, offset, from.size());
     }
 
     /// Asks for all of it.
@@ -536,6 +543,7 @@ fn pass(
     match size {
         Size::Rows(rows) => pass.dispatch_workgroups(groups(rows), 1, 1),
         Size::Queue(queue) => pass.dispatch_workgroups_indirect(queue, 0),
+        Size::QueueAt(queues, offset) => pass.dispatch_workgroups_indirect(queues, offset),
     }
 }
 

@@ -12,6 +12,7 @@ use crate::stages::{Kernel, WhittedStep};
 use crate::tree::{Answered, DeviceTree, Params};
 use bytemuck::Pod;
 use spherule_render::World;
+use spherule_render::shade::MaterialKind;
 use spherule_render::world::{
     DeviceIntegration, DeviceIntegrator, DeviceJob, DeviceLightChoice, DevicePaths, DevicePixels,
 };
@@ -38,6 +39,8 @@ struct JobPaths {
     materials: wgpu::Buffer,
     integration: DeviceIntegration,
     needs: Needs,
+    /// Kinds of materials that paths are queued by.
+    kinds: Vec<MaterialKind>,
     /// Shadow samples of a surface in Whitted ray tracing.
     all_shadows: usize,
     numbers: wgpu::Buffer,
@@ -119,8 +122,11 @@ impl Integrator {
         let found = read_column(device, &columns.found, count)?;
         stage(match job.integration {
             DeviceIntegration::Occlusion { .. } => Stage::Occlusion,
-            _ => Stage::Path,
+            _ => Stage::Surfaces,
         })?;
+        for &kind in &paths.kinds {
+            stage(Stage::Path(kind))?;
+        }
         let next_rays = read_column(device, &columns.rays, count)?;
         Ok(FirstStages { camera_rays, sequences, found, next_rays })
     }
@@ -157,6 +163,7 @@ impl JobPaths {
             appearance: integrator.appearance.clone(),
             materials: integrator.materials.clone(),
             integration: job.integration,
+            kinds: kinds(job),
             all_shadows: job::shadow_samples(job),
             needs: Needs {
                 shadows: shadow_rays(job),
@@ -218,6 +225,7 @@ impl JobPaths {
             samples: samples.len() as u32,
             shadows: self.needs.shadows.max(1) as u32,
             caustics: self.needs.caustics.into(),
+            kind_stride: columns.kind_stride() as u32,
             ..self.tree.params(count)
         };
         self.write_bounces(columns, &params);
@@ -266,17 +274,26 @@ impl JobPaths {
                 buffers.extend([&shadows.lights, paths, queue, &shadows.queue, sky]);
                 Kernel::Occlusion
             }
-            Stage::Path | Stage::Whitted(_) => {
-                buffers.extend(self.surface_buffers(columns));
-                buffers.extend([states, paths, &shadows.rays, &shadows.lights]);
-                buffers.extend([queue, next, &shadows.queue, lights, &columns.interiors, sky]);
-                if let Stage::Whitted(step) = stage {
-                    buffers.push(pixels);
-                    Kernel::Whitted(step)
-                } else {
-                    buffers.push(&columns.caustics.chains);
-                    Kernel::Path { caustics: self.needs.caustics }
+            Stage::Surfaces => {
+                for &kind in &self.kinds {
+                    columns.clear_kind(work, kind);
                 }
+                buffers.push(numbers);
+                buffers.extend(self.tree.spheres());
+                buffers.extend([&self.appearance, &self.materials, found, rays, states, paths]);
+                buffers.extend([&shadows.rays, queue, &columns.kind_queues, lights]);
+                buffers.extend([&columns.interiors, sky, &columns.caustics.chains]);
+                Kernel::Surfaces { caustics: self.needs.caustics }
+            }
+            Stage::Path(kind) => {
+                buffers.extend(self.bounce_buffers(columns, &columns.kind_queues, next));
+                size = Size::QueueAt(&columns.kind_queues, columns.kind_offset(kind));
+                Kernel::Path { caustics: self.needs.caustics, kind }
+            }
+            Stage::Whitted(step) => {
+                buffers.extend(self.bounce_buffers(columns, queue, next));
+                buffers.push(pixels);
+                Kernel::Whitted(step)
             }
             Stage::ShadowHits => {
                 buffers.push(self.tree.nodes());
@@ -320,12 +337,29 @@ impl JobPaths {
         buffers
     }
 
+    /// Returns the buffers of kernels of bounces, in the order in which they bind them first.
+    fn bounce_buffers<'a>(
+        &'a self,
+        columns: &'a Columns,
+        queue: &'a wgpu::Buffer,
+        next: &'a wgpu::Buffer,
+    ) -> Vec<&'a wgpu::Buffer> {
+        let shadows = &columns.shadows;
+        let mut buffers = self.surface_buffers(columns);
+        buffers.extend([&columns.states, &columns.paths, &shadows.rays, &shadows.lights]);
+        buffers.extend([queue, next, &shadows.queue, &self.lights]);
+        buffers.extend([&columns.interiors, &self.sky]);
+        buffers
+    }
+
     /// Runs the stages of all paths of a batch.
     fn follow_all(&self, columns: &Columns, mut params: Params) -> Result<(), DeviceError> {
         let device = self.device();
         let (depth, surfaces, has_shadows) = match self.integration {
             DeviceIntegration::Occlusion { .. } => (0, Stage::Occlusion, true),
-            DeviceIntegration::Paths { depth, .. } => (depth, Stage::Path, self.needs.shadows > 0),
+            DeviceIntegration::Paths { depth, .. } => {
+                (depth, Stage::Surfaces, self.needs.shadows > 0)
+            }
             DeviceIntegration::Whitted { depth, .. } => {
                 return self.follow_whitted(columns, params, depth);
             }
@@ -346,6 +380,9 @@ impl JobPaths {
                     self.stage(&mut work, Stage::Caustics, columns, queue)?;
                 }
                 self.stage(&mut work, surfaces, columns, queue)?;
+                for &kind in &self.kinds {
+                    self.stage(&mut work, Stage::Path(kind), columns, queue)?;
+                }
                 if has_shadows {
                     self.stage(&mut work, Stage::ShadowHits, columns, queue)?;
                     if self.needs.caustics {
@@ -439,6 +476,18 @@ fn shadow_rays(job: &DeviceJob) -> usize {
     }
 }
 
+/// Returns the kinds of materials that paths are queued by: emissive surfaces are diffuse beside.
+fn kinds(job: &DeviceJob) -> Vec<MaterialKind> {
+    if !matches!(job.integration, DeviceIntegration::Paths { .. }) {
+        return Vec::new();
+    }
+    let features = &job.world.features;
+    let emissive = features.has(MaterialKind::Emitter);
+    let has = |kind| features.has(kind) || (kind == MaterialKind::Lambertian && emissive);
+    let kinds = MaterialKind::ALL.into_iter().filter(|&kind| kind != MaterialKind::Emitter);
+    kinds.filter(|&kind| has(kind)).collect()
+}
+
 /// A stage of all paths of a batch.
 #[derive(Clone, Copy, Debug)]
 enum Stage {
@@ -448,8 +497,10 @@ enum Stage {
     FirstHits,
     /// Surfaces and shadow rays of ambient occlusion.
     Occlusion,
-    /// Surfaces, light and next rays of paths.
-    Path,
+    /// Surfaces of paths, and the light that they reach.
+    Surfaces,
+    /// Light and next rays at surfaces of a kind of material.
+    Path(MaterialKind),
     /// A step of Whitted ray tracing.
     Whitted(WhittedStep),
     /// Whether shadow rays hit anything.

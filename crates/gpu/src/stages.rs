@@ -2,6 +2,7 @@
 
 use crate::device::Device;
 use crate::error::DeviceError;
+use spherule_render::shade::MaterialKind;
 
 /// Rays in a queue, and the queue.
 const QUEUED_RAYS: &str = concat!(
@@ -15,9 +16,14 @@ const SPHERES: &str = include_str!("stages/spheres.wgsl");
 const RAYS: &str = include_str!("stages/rays.wgsl");
 const SPHERE_TERMS: &str = include_str!("stages/sphere_terms.wgsl");
 const PATH_STATE: &str = include_str!("stages/path_state.wgsl");
+const GROUND: &str = include_str!("stages/ground.wgsl");
 const QUEUE: &str = include_str!("stages/queue.wgsl");
 const SHADOW_RAYS: &str = include_str!("stages/shadow_rays.wgsl");
 const SHADOW_SEGMENTS: &str = include_str!("stages/shadow_segments.wgsl");
+const SHADOW_CLEAR: &str = include_str!("stages/shadow_clear.wgsl");
+const CHAIN_COLUMNS: &str = include_str!("stages/chain_columns.wgsl");
+const RADIANCE: &str = include_str!("stages/radiance.wgsl");
+const INTERIOR: &str = include_str!("stages/interior.wgsl");
 const MATERIALS: &str = include_str!("stages/materials.wgsl");
 const SURFACES: &str = include_str!("stages/surface.wgsl");
 const BASIS: &str = include_str!("stages/basis.wgsl");
@@ -25,17 +31,17 @@ const LIGHT_ROWS: &str = include_str!("stages/lights.wgsl");
 const LIGHT_TREE: &str = include_str!("stages/light_tree.wgsl");
 const SPHERE_LIGHT: &str = include_str!("stages/sphere_light.wgsl");
 const SUN: &str = include_str!("stages/sun.wgsl");
-/// What paths need of a job, its arithmetic and its samples.
-const JOB: [&str; 8] = [
+/// What paths need of a job, and its arithmetic.
+const JOB: [&str; 6] = [
     PARAMS,
     ARITHMETIC,
     SPHERE_TERMS,
     include_str!("stages/job.wgsl"),
-    include_str!("stages/hash.wgsl"),
-    include_str!("stages/sobol.wgsl"),
     include_str!("stages/warp.wgsl"),
-    include_str!("stages/ground.wgsl"),
+    GROUND,
 ];
+/// Their samples.
+const SAMPLES: [&str; 2] = [include_str!("stages/hash.wgsl"), include_str!("stages/sobol.wgsl")];
 /// Surfaces, and what is around all of them.
 const SURFACE: [&str; 7] = [
     SPHERES,
@@ -67,15 +73,17 @@ const LIGHTS: [&str; 7] = [
     include_str!("stages/direct_light.wgsl"),
 ];
 /// What bounces of all integrators have in common.
-const BOUNCE: [&str; 10] = [
+const BOUNCE: [&str; 12] = [
     PATH_STATE,
     QUEUE,
     RAYS,
     SHADOW_RAYS,
     include_str!("stages/path_bindings.wgsl"),
     SHADOW_SEGMENTS,
+    SHADOW_CLEAR,
+    RADIANCE,
     include_str!("stages/path_columns.wgsl"),
-    include_str!("stages/interior.wgsl"),
+    INTERIOR,
     include_str!("stages/glass.wgsl"),
     include_str!("stages/roulette.wgsl"),
 ];
@@ -90,10 +98,9 @@ const CAUSTICS: [&str; 7] = [
     include_str!("stages/chain.wgsl"),
 ];
 /// Bounces of path tracing.
-const PATH: [&str; 4] = [
+const PATH: [&str; 3] = [
     include_str!("stages/mirrored_light.wgsl"),
     include_str!("stages/glass_mirror.wgsl"),
-    include_str!("stages/emission.wgsl"),
     include_str!("stages/path.wgsl"),
 ];
 
@@ -117,8 +124,10 @@ pub(crate) enum Kernel {
     Caustics,
     /// Their second segments.
     SecondSegments,
-    /// A bounce of paths, on which surfaces sample `caustics` or not.
-    Path { caustics: bool },
+    /// Surfaces that paths hit, which sample `caustics` or not.
+    Surfaces { caustics: bool },
+    /// A bounce of paths at surfaces of a kind of material.
+    Path { caustics: bool, kind: MaterialKind },
     /// A step of a bounce of Whitted ray tracing.
     Whitted(WhittedStep),
     /// Sums of pixels.
@@ -138,7 +147,7 @@ pub(crate) enum WhittedStep {
 
 impl Kernel {
     /// The number of kernels.
-    pub(crate) const COUNT: usize = 37;
+    pub(crate) const COUNT: usize = 49;
 
     /// Returns its place among all kernels.
     pub(crate) fn place(self) -> usize {
@@ -149,12 +158,13 @@ impl Kernel {
             Self::Generate => 16,
             Self::Occlusion => 17,
             Self::Shadows => 18,
-            Self::Path { caustics: false } => 19,
+            Self::Surfaces { caustics: false } => 19,
             Self::Doubles { fused: false } => 20,
             Self::Doubles { fused: true } => 36,
             Self::Film => 21,
             Self::SecondSegments => 33,
-            Self::Path { caustics: true } => 34,
+            Self::Surfaces { caustics: true } => 34,
+            Self::Path { caustics, kind } => 37 + 6 * usize::from(caustics) + kind as usize,
             Self::Caustics => 35,
             Self::Whitted(step) => 22 + step as usize,
             Self::HitsAgain { any, cut, queued } => {
@@ -179,7 +189,10 @@ impl Kernel {
                 vec![("ANY", any.into()), ("AGAIN", 1), ("CUT", cut.into())]
             }
             Self::Whitted(step) => vec![("STEP", step as u8)],
-            Self::Path { caustics } => vec![("CAUSTICS", caustics.into())],
+            Self::Surfaces { caustics } => vec![("CAUSTICS", caustics.into())],
+            Self::Path { caustics, kind } => {
+                vec![("CAUSTICS", caustics.into()), ("KIND", kind as u8)]
+            }
             _ => Vec::new(),
         };
         if files.contains(&ARITHMETIC) {
@@ -215,11 +228,11 @@ impl Kernel {
             Self::Generate => {
                 let camera = include_str!("stages/camera.wgsl");
                 let generate = include_str!("stages/generate.wgsl");
-                ("generate", of(&[&JOB, &[PATH_STATE, RAYS, camera, generate]]))
+                ("generate", of(&[&JOB, &SAMPLES, &[PATH_STATE, RAYS, camera, generate]]))
             }
             Self::Occlusion => {
                 let ao = include_str!("stages/ao.wgsl");
-                ("ao", of(&[&JOB, &SURFACE, &[QUEUE, RAYS, SHADOW_RAYS, ao]]))
+                ("ao", of(&[&JOB, &SAMPLES, &SURFACE, &[QUEUE, RAYS, SHADOW_RAYS, ao]]))
             }
             Self::Shadows => {
                 let shadows = include_str!("stages/shadow_queue.wgsl");
@@ -228,12 +241,16 @@ impl Kernel {
             Self::Caustics => {
                 let surface = [SPHERES, MATERIALS, SURFACES, BASIS];
                 let lights = [LIGHT_ROWS, LIGHT_TREE, SPHERE_LIGHT, SUN];
-                let rays = [PATH_STATE, QUEUE, RAYS, SHADOW_RAYS, SHADOW_SEGMENTS];
+                let rays = [PATH_STATE, QUEUE, RAYS, SHADOW_RAYS, SHADOW_SEGMENTS, SHADOW_CLEAR];
                 let own = [
+                    CHAIN_COLUMNS,
                     include_str!("stages/caustic_bindings.wgsl"),
                     include_str!("stages/caustics.wgsl"),
                 ];
-                ("caustics", of(&[&JOB, &surface, &BSDFS, &lights, &rays, &CAUSTICS, &own]))
+                (
+                    "caustics",
+                    of(&[&JOB, &SAMPLES, &surface, &BSDFS, &lights, &rays, &CAUSTICS, &own]),
+                )
             }
             Self::SecondSegments => {
                 let files = [
@@ -241,7 +258,7 @@ impl Kernel {
                     ARITHMETIC,
                     SPHERE_TERMS,
                     include_str!("stages/job.wgsl"),
-                    include_str!("stages/ground.wgsl"),
+                    GROUND,
                     QUEUE,
                     RAYS,
                     SHADOW_RAYS,
@@ -252,11 +269,22 @@ impl Kernel {
             Self::Film => ("film", vec![PARAMS, ARITHMETIC, include_str!("stages/film.wgsl")]),
             Self::Whitted(_) => {
                 let whitted = include_str!("stages/whitted.wgsl");
-                ("whitted", of(&[&JOB, &SURFACE, &BSDFS, &LIGHTS, &BOUNCE, &[whitted]]))
+                ("whitted", of(&[&JOB, &SAMPLES, &SURFACE, &BSDFS, &LIGHTS, &BOUNCE, &[whitted]]))
             }
-            Self::Path { .. } => {
-                ("path", of(&[&JOB, &SURFACE, &BSDFS, &LIGHTS, &BOUNCE, &CAUSTICS, &PATH]))
+            Self::Surfaces { .. } => {
+                let rays = [PATH_STATE, QUEUE, RAYS, RADIANCE, INTERIOR];
+                let own = [
+                    CHAIN_COLUMNS,
+                    include_str!("stages/emission.wgsl"),
+                    SHADOW_CLEAR,
+                    include_str!("stages/surfaces.wgsl"),
+                ];
+                ("surfaces", of(&[&JOB, &SURFACE, &BSDFS, &LIGHTS, &rays, &CAUSTICS, &own]))
             }
+            Self::Path { .. } => (
+                "path",
+                of(&[&JOB, &SAMPLES, &SURFACE, &BSDFS, &LIGHTS, &BOUNCE, &CAUSTICS, &PATH]),
+            ),
         }
     }
 }

@@ -65,6 +65,7 @@ pub(crate) struct Params {
     pub(crate) shadows: u32,
     pub(crate) first_shadow: u32,
     pub(crate) caustics: u32,
+    pub(crate) kind_stride: u32,
 }
 
 /// Buffers of one dispatch.

@@ -19,6 +19,8 @@ struct Params {
     first_shadow: u32,
     // 1 if paths have caustic samples.
     caustics: u32,
+    // Words from the queue of a kind of material to that of the next.
+    kind_stride: u32,
 }
 
 // Not a uniform buffer: drivers may compile kernels anew for its values, and then they know the 0.

@@ -1,11 +1,19 @@
-// A bounce of paths: `integrator/path.rs`. Replaces each ray by the next one of its path, and writes its shadow rays
-// with the light that they carry.
-
-// Specular bounces of paths since the last diffuse surface.
-@group(0) @binding(22) var<storage, read_write> chains: array<vec4<u32>>;
+// Surfaces of one kind of material that paths have hit: `integrator/path.rs`. Replaces each ray by the next one of its
+// path, and writes its shadow rays with the light that they carry.
 
 // True if surfaces sample caustics.
 override CAUSTICS: bool = true;
+// The kind of material; emissive surfaces count as diffuse.
+override KIND: u32 = 0u;
+
+// As `row_of`, for the queue of the kind among those of all.
+fn row_of_kind(id: u32) -> u32 {
+    let first = KIND * params.kind_stride;
+    if id >= queue[first + 3u] {
+        return NO_ROW;
+    }
+    return queue[first + QUEUE_HEAD + id];
+}
 
 // Writes the shadow ray of a light sample. False if the device does not know it.
 fn sample_direct_light(
@@ -34,38 +42,15 @@ fn sample_direct_light(
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let path = row_of(id.x);
+    let path = row_of_kind(id.x);
     if path == NO_ROW {
-        return;
-    }
-    clear_shadow_rays(path);
-    if params.bounce == 0u && has(NESTED_GLASS) && !begin_interiors(path) {
-        paths[path].w |= 1u;
         return;
     }
     let state = states[path];
     var surface = surface_of(path, found[path], Entry(state.inside != 0u, state.entry));
-    let cut = params.bounce == job.depth;
-    if !surface.known || (paths[path].w & 1u) != 0u {
-        paths[path].w |= 1u;
-        return;
-    }
-    var kind = EMITTER;
-    if surface.hit != MISS {
-        kind = material_kind(material_at(surface.hit));
-    }
-    if kind == EMITTER {
-        add_light(path, reached_light(path, &surface, state));
-    }
-    if cut || surface.hit == MISS {
-        return;
-    }
     let sequence = sequences[path];
-    if CAUSTICS && (kind == CONDUCTOR || kind == DIELECTRIC || kind == PLASTIC) {
-        track_chain(path, surface.hit, state.previous);
-    }
-    let is_glass = kind == DIELECTRIC;
-    var bsdf = bsdf_at(surface.hit);
+    let is_glass = KIND == DIELECTRIC;
+    var bsdf = bsdf_of(surface.hit, KIND);
     let basis = basis_about(surface.facing);
     var outgoing = to_local(basis, -ray_direction(path));
     outgoing.z = max(outgoing.z, 0x1p-23f);
@@ -85,7 +70,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             return;
         }
         mirrors = has(MIRRORED_LIGHT) && has_diffuse_base(&bsdf) && !surface.inside;
-        if mirrors {
+        if mirrors && (KIND == PLASTIC || KIND == REFLECTIVE) {
             let factor = keep3(state.throughput * bsdf_mirrored(&bsdf, outgoing));
             let toward = normalized(to_world(basis, mirror(outgoing)));
             mirrored = Mirror(surface.point, surface.hit, toward, factor, state.previous);

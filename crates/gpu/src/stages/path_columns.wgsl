@@ -8,11 +8,6 @@ fn go_on(path: u32) {
     atomicStore(&next_queue[QUEUE_HEAD + place], path);
 }
 
-fn add_light(path: u32, light: vec3<f32>) {
-    let radiance = keep3(bitcast<vec3<f32>>(paths[path].xyz) + light);
-    paths[path] = vec4<u32>(bitcast<vec3<u32>>(radiance), paths[path].w);
-}
-
 // Replaces a path's ray by one from a surface, which may go through the inside of the surface's sphere.
 fn write_next_ray(path: u32, surface: ptr<function, Surface>, direction: vec3<f32>, inside: bool) {
     var chord = INFINITELY_FAR;

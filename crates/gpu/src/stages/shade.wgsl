@@ -35,8 +35,12 @@ fn greatest_of(color: vec3<f32>) -> f32 {
 }
 
 fn bsdf_at(hit: u32) -> Bsdf {
+    return bsdf_of(hit, material_kind(material_at(hit)));
+}
+
+// The BSDF of a surface whose material is of this kind.
+fn bsdf_of(hit: u32, kind: u32) -> Bsdf {
     let material = material_at(hit);
-    let kind = material_kind(material);
     let color = color_at(hit);
     let none = vec3<f32>(0.0);
     var bsdf = Bsdf(kind, none, material_numbers(material), none, none, none);
