@@ -1,6 +1,6 @@
 //! Specular spheres and emitters of caustics, as `casters.wgsl` has them.
 
-use crate::lights;
+use crate::lights::{self, halves};
 use crate::materials::words;
 use spherule_render::world::{
     DeviceCaster, DeviceCasterNode, DeviceCaustics, DeviceEmitter, DeviceLightChoice,
@@ -50,10 +50,6 @@ pub(crate) fn append(rows: &mut Vec<[u32; 4]>, caustics: &DeviceCaustics) -> u32
         [columns, depth, height, 0],
     ]);
     first as u32
-}
-
-fn halves(x: f64) -> [u32; 2] {
-    [x.to_bits() as u32, (x.to_bits() >> 32) as u32]
 }
 
 fn caster(caster: &DeviceCaster) -> [u32; 4] {

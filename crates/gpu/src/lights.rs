@@ -94,10 +94,14 @@ pub(crate) fn reach(lights: &DeviceLights) -> f64 {
     lights.reach.min(FAR_REACH)
 }
 
+/// Returns a number as two words.
+pub(crate) fn halves(x: f64) -> [u32; 2] {
+    [x.to_bits() as u32, (x.to_bits() >> 32) as u32]
+}
+
 fn point(point: &DevicePoint) -> [[u32; 4]; 3] {
-    let words = |x: f64| [x.to_bits() as u32, (x.to_bits() >> 32) as u32];
-    let [x, y, z] = point.position.to_array().map(words);
-    let [scale, more] = words(point.falloff);
+    let [x, y, z] = point.position.to_array().map(halves);
+    let [scale, more] = halves(point.falloff);
     let [r, g, b] = point.intensity.to_array().map(f32::to_bits);
     [[x[0], x[1], y[0], y[1]], [z[0], z[1], scale, more], [r, g, b, 0]]
 }

@@ -22,6 +22,7 @@ const SHADOW_RAYS: &str = include_str!("stages/shadow_rays.wgsl");
 const SHADOW_SEGMENTS: &str = include_str!("stages/shadow_segments.wgsl");
 const SHADOW_CLEAR: &str = include_str!("stages/shadow_clear.wgsl");
 const CHAIN_COLUMNS: &str = include_str!("stages/chain_columns.wgsl");
+const WORLD_BINDINGS: &str = include_str!("stages/world_bindings.wgsl");
 const RADIANCE: &str = include_str!("stages/radiance.wgsl");
 const INTERIOR: &str = include_str!("stages/interior.wgsl");
 const MATERIALS: &str = include_str!("stages/materials.wgsl");
@@ -73,11 +74,12 @@ const LIGHTS: [&str; 7] = [
     include_str!("stages/direct_light.wgsl"),
 ];
 /// What bounces of all integrators have in common.
-const BOUNCE: [&str; 12] = [
+const BOUNCE: [&str; 13] = [
     PATH_STATE,
     QUEUE,
     RAYS,
     SHADOW_RAYS,
+    WORLD_BINDINGS,
     include_str!("stages/path_bindings.wgsl"),
     SHADOW_SEGMENTS,
     SHADOW_CLEAR,
@@ -232,7 +234,15 @@ impl Kernel {
             }
             Self::Occlusion => {
                 let ao = include_str!("stages/ao.wgsl");
-                ("ao", of(&[&JOB, &SAMPLES, &SURFACE, &[QUEUE, RAYS, SHADOW_RAYS, ao]]))
+                (
+                    "ao",
+                    of(&[
+                        &JOB,
+                        &SAMPLES,
+                        &SURFACE,
+                        &[QUEUE, RAYS, SHADOW_RAYS, WORLD_BINDINGS, ao],
+                    ]),
+                )
             }
             Self::Shadows => {
                 let shadows = include_str!("stages/shadow_queue.wgsl");
@@ -244,6 +254,7 @@ impl Kernel {
                 let rays = [PATH_STATE, QUEUE, RAYS, SHADOW_RAYS, SHADOW_SEGMENTS, SHADOW_CLEAR];
                 let own = [
                     CHAIN_COLUMNS,
+                    WORLD_BINDINGS,
                     include_str!("stages/caustic_bindings.wgsl"),
                     include_str!("stages/caustics.wgsl"),
                 ];
@@ -275,6 +286,7 @@ impl Kernel {
                 let rays = [PATH_STATE, QUEUE, RAYS, RADIANCE, INTERIOR];
                 let own = [
                     CHAIN_COLUMNS,
+                    WORLD_BINDINGS,
                     include_str!("stages/emission.wgsl"),
                     SHADOW_CLEAR,
                     include_str!("stages/surfaces.wgsl"),

@@ -1,13 +1,6 @@
 // Ambient occlusion: `integrator/ao.rs`. Replaces each camera ray by a shadow ray, and stores the light
 // that it carries.
 
-@group(0) @binding(1) var<storage, read> job: Job;
-@group(0) @binding(2) var<storage, read> spheres_0: array<vec4<u32>>;
-@group(0) @binding(3) var<storage, read> spheres_1: array<vec4<u32>>;
-@group(0) @binding(4) var<storage, read> spheres_2: array<vec4<u32>>;
-@group(0) @binding(5) var<storage, read> spheres_3: array<vec4<u32>>;
-@group(0) @binding(6) var<storage, read> appearance: array<vec4<u32>>;
-@group(0) @binding(7) var<storage, read> materials: array<vec4<u32>>;
 @group(0) @binding(8) var<storage, read> sobol: array<vec4<u32>>;
 @group(0) @binding(9) var<storage, read> sequences: array<Sequence>;
 @group(0) @binding(10) var<storage, read> found: array<u32>;

@@ -9,6 +9,11 @@ fn zero64() -> u64 {
     return (u64(params.zero) << 32u) | u64(params.zero);
 }
 
+// The number of two words, lower half first.
+fn double_at(bits: vec2<u32>) -> f64 {
+    return bitcast<f64>((u64(bits.y) << 32u) | u64(bits.x));
+}
+
 // The same number, through which nothing is fused or reordered.
 fn kept(x: f64) -> f64 {
     return bitcast<f64>(bitcast<u64>(x) ^ zero64());

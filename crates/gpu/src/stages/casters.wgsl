@@ -29,28 +29,10 @@ fn caster_head(place: u32) -> vec4<u32> {
     return light_rows[job.caster_rows + place];
 }
 
-fn double_at(bits: vec2<u32>) -> f64 {
-    return bitcast<f64>((u64(bits.y) << 32u) | u64(bits.x));
-}
-
 // The number of a sphere among those that cast caustics; MISS for another.
 fn caster_of(sphere: u32) -> u32 {
     let head = caster_head(0u);
-    var low = 0u;
-    var high = head.x;
-    while low < high {
-        let middle = (low + high) / 2u;
-        let found = light_rows[head.y + middle];
-        if found.x == sphere {
-            return found.y;
-        }
-        if found.x < sphere {
-            low = middle + 1u;
-        } else {
-            high = middle;
-        }
-    }
-    return MISS;
+    return number_of(sphere, head.y, head.x);
 }
 
 fn caster_row(caster: u32) -> vec4<u32> {

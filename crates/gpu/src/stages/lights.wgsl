@@ -40,6 +40,25 @@ fn light_word(first: u32, place: u32) -> u32 {
     return light_rows[first + (place >> 2u)][place & 3u];
 }
 
+// The number beside a sphere in rows that are ordered by spheres; MISS if it is not among them.
+fn number_of(sphere: u32, first: u32, count: u32) -> u32 {
+    var low = 0u;
+    var high = count;
+    while low < high {
+        let middle = (low + high) / 2u;
+        let found = light_rows[first + middle];
+        if found.x == sphere {
+            return found.y;
+        }
+        if found.x < sphere {
+            low = middle + 1u;
+        } else {
+            high = middle;
+        }
+    }
+    return MISS;
+}
+
 fn light_vector(row: u32) -> vec3<f32> {
     return bitcast<vec3<f32>>(light_rows[row].xyz);
 }

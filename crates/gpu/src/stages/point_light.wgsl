@@ -2,20 +2,12 @@
 
 const BRIGHTEST: f32 = 1e30;
 
-fn light_double(low: u32, high: u32) -> f64 {
-    return bitcast<f64>(u64(low) | (u64(high) << 32u));
-}
-
 fn sample_point_light(point: vec3<f32>, light: u32) -> LightSample {
     let row = job.point_rows + 3u * light;
     let first = light_rows[row];
     let second = light_rows[row + 1u];
-    let position = vec3<f64>(
-        light_double(first.x, first.y),
-        light_double(first.z, first.w),
-        light_double(second.x, second.y),
-    );
-    let scale = light_double(second.z, second.w);
+    let position = vec3<f64>(double_at(first.xy), double_at(first.zw), double_at(second.xy));
+    let scale = double_at(second.zw);
     let toward = kept3(position - vec3<f64>(point));
     let distance = sqrt(dot_unfused(toward, toward));
     var sample = no_light();

@@ -34,7 +34,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             paths[path].w += SHADOW_RAY;
             let point = bitcast<vec3<f32>>(start.xyz);
             let direction = bitcast<vec3<f32>>(toward.xyz);
-            let t = bitcast<f64>((u64(rest.y) << 32u) | u64(rest.x));
+            let t = double_at(rest.xy);
             let ground = cross_ground(point, direction, start.w);
             if ground.crossed && ground.t < t {
                 continue;

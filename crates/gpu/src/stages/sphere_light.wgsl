@@ -86,21 +86,7 @@ fn sample_sphere_light(point: vec3<f32>, own: u32, light: u32, u: vec2<f32>) -> 
 
 // The number of an emissive sphere among the lights; MISS if it is not sampled.
 fn emitter_number(sphere: u32) -> u32 {
-    var low = 0u;
-    var high = job.emitters;
-    while low < high {
-        let middle = (low + high) / 2u;
-        let found = light_rows[job.found_rows + middle];
-        if found.x == sphere {
-            return found.y;
-        }
-        if found.x < sphere {
-            low = middle + 1u;
-        } else {
-            high = middle;
-        }
-    }
-    return MISS;
+    return number_of(sphere, job.found_rows, job.emitters);
 }
 
 // True if a point is outside of a sphere.
