@@ -68,7 +68,7 @@ pub(crate) struct ShadowColumns {
 
 /// Columns of caustic samples, whose shadow rays come after the others.
 pub(crate) struct CausticColumns {
-    /// Of each path the specular bounces since its last diffuse surface, and its first caustic sample.
+    /// Specular bounces of each path since its last diffuse surface, and its first caustic sample.
     pub(crate) chains: wgpu::Buffer,
     /// Second segments of the samples, and the next sample of the path.
     pub(crate) seconds: wgpu::Buffer,

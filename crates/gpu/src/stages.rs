@@ -32,7 +32,7 @@ const LIGHT_ROWS: &str = include_str!("stages/lights.wgsl");
 const LIGHT_TREE: &str = include_str!("stages/light_tree.wgsl");
 const SPHERE_LIGHT: &str = include_str!("stages/sphere_light.wgsl");
 const SUN: &str = include_str!("stages/sun.wgsl");
-/// What paths need of a job, and its arithmetic.
+/// Numbers of a job, and its arithmetic.
 const JOB: [&str; 6] = [
     PARAMS,
     ARITHMETIC,
@@ -73,7 +73,7 @@ const LIGHTS: [&str; 7] = [
     include_str!("stages/sky_light.wgsl"),
     include_str!("stages/direct_light.wgsl"),
 ];
-/// What bounces of all integrators have in common.
+/// Rays, glass and roulette of bounces of all integrators.
 const BOUNCE: [&str; 13] = [
     PATH_STATE,
     QUEUE,

@@ -9,7 +9,7 @@ const CROSSED: u32 = 1u;
 const PARAXIAL: u32 = 2u;
 const MARGINAL: u32 = 3u;
 
-// What all samples of a receiver have in common.
+// The numbers that all samples of a receiver have in common.
 struct CausticDraw {
     at: Receiver,
     emitter: u32,

@@ -65,7 +65,7 @@ fn environment_light(path: u32, previous: u32) -> vec3<f32> {
     return vec3<f32>(0.0);
 }
 
-// What a path carries of the light of the surface that it has hit, or of what is around the scene: of the environment and
+// The light that a path carries of the surface that it has hit, or of what is around the scene: of the environment and
 // the suns.
 fn reached_light(path: u32, surface: ptr<function, Surface>, state: PathState) -> vec3<f32> {
     let escaped = (*surface).hit == MISS;

@@ -13,6 +13,6 @@
 @group(0) @binding(17) var<storage, read_write> next_queue: array<atomic<u32>>;
 @group(0) @binding(18) var<storage, read_write> shadow_queue: array<atomic<u32>>;
 @group(0) @binding(19) var<storage, read> light_rows: array<vec4<u32>>;
-// Of each path the glass spheres that contain it, or MISS.
+// The glass spheres that contain each path, or MISS.
 @group(0) @binding(20) var<storage, read_write> interiors: array<u32>;
 @group(0) @binding(21) var<storage, read> sky_rows: array<vec4<u32>>;

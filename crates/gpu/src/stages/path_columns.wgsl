@@ -1,4 +1,4 @@
-// What the kernels of bounces write to the columns of paths.
+// Next rays of paths, which the kernels of bounces write.
 
 fn go_on(path: u32) {
     let place = atomicAdd(&next_queue[3], 1u);

@@ -5,7 +5,7 @@
 @group(0) @binding(3) var<storage, read> found: array<u32>;
 @group(0) @binding(4) var<storage, read_write> paths: array<vec4<u32>>;
 @group(0) @binding(5) var<storage, read> queue: array<u32>;
-// Of each path its first caustic sample, and of each of these the next one.
+// The first caustic sample of each path, and the next one of each of these.
 @group(0) @binding(6) var<storage, read> chains: array<vec4<u32>>;
 @group(0) @binding(7) var<storage, read> seconds: array<vec4<u32>>;
 

@@ -1,4 +1,4 @@
-// What kernels write to the columns of shadow rays.
+// Shadow rays, which kernels write to their columns.
 
 // A shadow ray to a light at this distance, with the light that it carries.
 fn write_shadow_ray(

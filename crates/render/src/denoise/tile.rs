@@ -219,7 +219,7 @@ fn choose_lanes<L: Lanes>(
     chosen.store(&mut chosen_sum[x..]);
 }
 
-/// What a row of the denoised picture is blended from.
+/// Sources that a row of the denoised picture is blended from.
 struct Blended<'a> {
     columns: &'a Row<COLUMNS>,
     predictions: &'a Row<PREDICTED>,

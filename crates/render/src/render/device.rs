@@ -9,7 +9,7 @@ use crate::integrator::counters::Counters;
 use crate::integrator::light_images::SeenLights;
 use crate::integrator::workspace::{BATCH, Workspace};
 use crate::scene::Rgb;
-use crate::world::{DevicePath, DevicePaths, DevicePixel, DevicePixels};
+use crate::world::{DevicePath, DevicePaths, DevicePixels};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -91,7 +91,7 @@ struct Batch<'a> {
     pass: Range<u32>,
     /// The pixels of all tiles, without those in which the camera sees lights: the processor samples these.
     pixels: Vec<(u32, u32)>,
-    /// Of each tile, whether the camera sees lights in its pixels; empty if it sees none.
+    /// Flags of the pixels of each tile in which the camera sees lights; empty if it sees none.
     seen: Vec<Vec<bool>>,
 }
 
@@ -211,23 +211,18 @@ fn add_found(
     let pixels: Vec<_> =
         (0..tile.len() as usize).map(|i| if is_seen(i) { None } else { followed.next() }).collect();
     for (pixel, position) in pixels.iter().zip(tile.pixels()) {
-        let place = pixel.map(DevicePixel::place);
-        match place {
-            Some(Some(place)) => {
-                unsummed.push(position);
-                paths.extend_from_slice(&found.samples[place * pass.len()..][..pass.len()]);
-            }
-            None => {
-                unsummed.push(position);
-                paths.resize(paths.len() + pass.len(), DevicePath::UNKNOWN);
-            }
-            Some(None) => {
-                let (bounce, shadow) =
-                    pixel.map_or((0, 0), |pixel| (pixel.bounce_rays(), pixel.shadow_rays()));
-                counters.camera_rays += pass.len() as u64;
-                counters.bounce_rays += bounce;
-                counters.shadow_rays += shadow;
-            }
+        let Some(pixel) = pixel else {
+            unsummed.push(position);
+            paths.resize(paths.len() + pass.len(), DevicePath::UNKNOWN);
+            continue;
+        };
+        if let Some(place) = pixel.place() {
+            unsummed.push(position);
+            paths.extend_from_slice(&found.samples[place * pass.len()..][..pass.len()]);
+        } else {
+            counters.camera_rays += pass.len() as u64;
+            counters.bounce_rays += pixel.bounce_rays();
+            counters.shadow_rays += pixel.shadow_rays();
         }
     }
     for path in paths.iter().filter(|path| path.radiance().is_some()) {

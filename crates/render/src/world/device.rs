@@ -228,7 +228,7 @@ pub struct DeviceSun {
     pub weight: Rgb,
 }
 
-/// The smooth specular spheres that pass on the light of emissive spheres and suns, and these: see [`crate::world`]'s caustics.
+/// The smooth specular spheres that pass on the light of emissive spheres and suns, and these emitters.
 #[derive(Clone, Debug, Default)]
 pub struct DeviceCaustics {
     /// True if paths sample caustics.
@@ -249,7 +249,7 @@ pub struct DeviceCaustics {
     pub cells_per_length: f32,
     /// See `low`.
     pub cells: glam::UVec3,
-    /// Of each cell, along x first, bounds for the normals +x, +y, +z, -x, -y and -z.
+    /// Bounds of each cell, along x first, for the normals +x, +y, +z, -x, -y and -z.
     pub bounds: Vec<[f32; 6]>,
 }
 
@@ -264,7 +264,7 @@ pub struct DeviceCaster {
     pub leaf: u32,
 }
 
-/// A node of the tree of specular spheres: see [`crate::world`]'s caustics.
+/// A node of the tree of specular spheres: one of them, or a cluster.
 #[derive(Clone, Copy, Debug)]
 pub struct DeviceCasterNode {
     /// Center of its bounds.
