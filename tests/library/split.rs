@@ -6,7 +6,10 @@ use spherule_render::film::{Film, Region};
 use spherule_render::layers::{Layer, Layers, features, layers};
 use spherule_render::render::{End, ImagePart, Options, Render, ResumableRender, render};
 use spherule_render::sampling::mix;
-use spherule_render::scene::{Identity, Material, Rgb, Roulette, SamplerKind, Scene, Settings};
+use spherule_render::scene::{
+    EnvironmentMap, Identity, Material, Rgb, Roulette, SamplerKind, Scene, Settings,
+};
+use spherule_render::settings::Filter;
 use spherule_render::split::{Merge, MergeError, Part, Split};
 use spherule_render::world::World;
 use std::sync::atomic::AtomicBool;
@@ -121,6 +124,31 @@ fn merged_parts_equal_the_whole() {
             assert!(merged.complete);
             assert_same(&merged, &straight, &format!("{count} parts by {split:?}"));
         }
+    }
+}
+
+/// Where the camera sees many small lights in a pixel, their rays are more than wait at once, of each number of samples
+/// others.
+#[test]
+fn images_of_many_lights_can_be_split() {
+    let mut scene = furnace();
+    for i in 0..200 {
+        let (sin, cos) = f64::from(i).sin_cos();
+        let center = [cos, sin, (0.7 * f64::from(i)).sin()];
+        sphere(&mut scene, center, 0.003, emitter(1.0 + 0.3 * i as f32, 0.0));
+    }
+    // Lights are searched for in the image only where they may be mirrored, too.
+    sphere(&mut scene, [0.0; 3], 0.4, mirror());
+    scene.environment.map = EnvironmentMap::Constant(Rgb::new(0.3, 0.7, 0.9));
+    look(&mut scene, DVec3::new(1.0, 2.0, 9.0), DVec3::ZERO, 10.0);
+    scene.settings.filter = Filter::BlackmanHarris;
+    (scene.settings.width, scene.settings.height, scene.settings.spp) = (13, 11, 40);
+    let world = World::build(&scene).expect("the scene is sound");
+    let straight = render(&world, &scene.settings, &STATISTICS).expect("settings in range");
+    for count in [2, 7, 40] {
+        let parts = parts(&world, &scene.settings, &STATISTICS, Split::Samples, count);
+        let merged = merge(false, parts).expect("they are all there").render();
+        assert_same(&merged, &straight, &format!("{count} parts"));
     }
 }
 

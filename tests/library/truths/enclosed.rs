@@ -279,12 +279,15 @@ fn no_light_enters_an_emitter() {
 /// fraction of 1 - (distance / diameter)^2 of the directions is open.
 #[test]
 fn occlusion_inside_a_sphere_depends_on_its_chords() {
-    for factor in [0.1, 0.5, 0.9, 1.0, 1.5] {
-        let mut scene = closed(lambertian(1.0));
-        scene.settings.integrator = Integrator::Ao { distance: factor * 2.0 * RADIUS };
-        scene.settings.spp = 256;
-        let truth = (1.0 - factor * factor).max(0.0);
-        assert_expected(measure(&scene), truth, &format!("{factor}"));
+    // Glass occludes like all else.
+    for (what, made_of) in [("diffuse", lambertian(1.0)), ("glass", glass(1.5))] {
+        for factor in [0.1, 0.5, 0.9, 1.0, 1.5] {
+            let mut scene = closed(made_of.clone());
+            scene.settings.integrator = Integrator::Ao { distance: factor * 2.0 * RADIUS };
+            scene.settings.spp = 256;
+            let truth = (1.0 - factor * factor).max(0.0);
+            assert_expected(measure(&scene), truth, &format!("{what} {factor}"));
+        }
     }
 }
 

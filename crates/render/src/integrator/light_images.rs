@@ -12,7 +12,7 @@
 use super::Job;
 use super::caustics;
 use super::direct_light::power_heuristic;
-use super::shadow_queue::ShadowRay;
+use super::shadow_queue::{self, ShadowRay};
 use super::workspace::Workspace;
 use crate::film::Region;
 use crate::lanes::{Doubles, F32x16, F64x8, Lanes, MAX_LANES, first_lanes, set_bits, widen};
@@ -164,8 +164,8 @@ struct PixelRow<'a> {
     lens: Option<[F32x16; 2]>,
 }
 
-/// Samples the lights that camera rays may see, in their pixels: first those by way of spheres, then the others,
-/// so that the light of a path is added in an order that does not depend on other paths.
+/// Samples the lights that camera rays may see, in their pixels: first those by way of spheres, then the others, and
+/// traces the rays to them, so that the light of a path is added in an order that does not depend on other paths.
 pub(super) fn sample(job: &Job, work: &mut Workspace) {
     if work.seen_lights.is_empty() {
         return;
@@ -173,6 +173,7 @@ pub(super) fn sample(job: &Job, work: &mut Workspace) {
     sample_lights(job, work, |light| light.sphere != MISS);
     caustics::flush(job, work);
     sample_lights(job, work, |light| light.sphere == MISS);
+    shadow_queue::trace_shadow_rays(job, work);
 }
 
 /// Samples those of the lights that `selected` returns true for.

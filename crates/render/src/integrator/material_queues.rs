@@ -20,7 +20,7 @@ pub struct MaterialQueue {
     columns: WordColumns<COLUMNS>,
     /// States of the paths.
     pub states: PathStates,
-    /// One bit per row, set if the surface is hit from inside; always 0 for glass.
+    /// One bit per row, set if the surface is hit from inside.
     inside: [u16; ROWS / MAX_LANES],
 }
 
@@ -120,12 +120,22 @@ impl MaterialQueues {
                 let Some(queue) = queue else { continue };
                 let lanes = queues.has_bits_of(bits(number as u32)).bits() & there;
                 if lanes != 0 {
-                    queue.push(columns, (start, lanes), number);
+                    queue.push(columns, (start, lanes));
                 }
             }
         }
         self.0.iter_mut().flatten().for_each(|queue| queue.pad());
     }
+}
+
+/// Moves the bits of lanes together, as [`Packing`] moves the lanes.
+#[inline(always)]
+fn pack_bits(bits: u32, lanes: u32) -> u32 {
+    if lanes & (lanes + 1) == 0 {
+        return bits;
+    }
+    let place = |lane: usize| (lanes & ((1 << lane) - 1)).count_ones();
+    set_bits(bits).fold(0, |packed, lane| packed | 1 << place(lane))
 }
 
 /// Returns the queue numbers of a row of hits. `kind` returns the kind of a body, and anything for
@@ -223,14 +233,11 @@ impl MaterialQueue {
 
     /// Appends some of sixteen rows.
     #[inline(always)]
-    fn push(&mut self, columns: &HitColumns, (start, lanes): (usize, u32), kind: usize) {
+    fn push(&mut self, columns: &HitColumns, (start, lanes): (usize, u32)) {
         let (packing, first) = (Packing::new(lanes), self.len);
         let inside = columns.surface.inside(start) & lanes;
-        if inside != 0 && kind != MaterialKind::Dielectric as usize {
-            for lane in set_bits(inside) {
-                let row = first + (lanes & ((1 << lane) - 1)).count_ones() as usize;
-                self.inside[row / MAX_LANES] |= 1 << (row % MAX_LANES);
-            }
+        if inside != 0 {
+            self.set_inside(first, pack_bits(inside, lanes));
         }
         let number = U32x16::new(std::array::from_fn(|lane| (start + lane) as u32));
         let hit = U32x16::new(*row(&columns.hits.sphere, start));
@@ -244,6 +251,15 @@ impl MaterialQueue {
         self.columns.pack((FACING, first), &packing, [facing.x, facing.y, facing.z]);
         self.states.pack(first, &packing, &rest);
         self.len += packing.count();
+    }
+
+    /// Marks hits from `first` on, at most sixteen, that are seen from inside.
+    fn set_inside(&mut self, first: usize, inside: u32) {
+        let bits = inside << (first % MAX_LANES);
+        self.inside[first / MAX_LANES] |= bits as u16;
+        if let Some(next) = self.inside.get_mut(first / MAX_LANES + 1) {
+            *next |= (bits >> MAX_LANES) as u16;
+        }
     }
 
     /// Pads the last row of sixteen with copies of the last hit's sphere, so that kernels read valid
