@@ -29,6 +29,8 @@ const CHILD_ROW: u32 = 4u;
 const LEAF: u32 = 0x40000000u;
 const NO_CHILD: u32 = 0x80000000u;
 const DEPTH: u32 = 24u;
+// The bit of a radius where there is no sphere, or an equal one before it.
+const NEVER_HIT: u32 = 0x80000000u;
 
 // The largest relative error of a sum, a difference or a product: one unit in the last place.
 const E: f32 = 0x1p-23f;
@@ -92,13 +94,13 @@ struct Search {
 // 1 if the line of a ray may meet a sphere, else 0. `test_sphere` decides. The reach is a sum of what is not below 0, in
 // which any order will do.
 fn is_near(ray: ptr<function, Ray>, bits: vec4<u32>) -> u32 {
-    let radius = bitcast<f32>(bits.w & 0x7fffffffu);
+    let radius = bitcast<f32>(bits.w & ~NEVER_HIT);
     let to_center = keep3(bitcast<vec3<f32>>(bits.xyz) - (*ray).origin);
     let middle = keep(dot(to_center, (*ray).direction) * (*ray).inverse_length2);
     let perpendicular = keep3(to_center - middle * (*ray).direction);
     let reach = radius * (1.0 + K) + (abs(middle) * K * (*ray).length + TINY);
     let meets = dot(perpendicular, perpendicular) <= reach * reach;
-    return select(0u, 1u, meets && (bits.w & 0x80000000u) == 0u);
+    return select(0u, 1u, meets && (bits.w & NEVER_HIT) == 0u);
 }
 
 // The spheres of a leaf that the line of a ray may meet: a bit for each. All are read at once.
@@ -117,7 +119,8 @@ fn spheres_near(ray: ptr<function, Ray>, first: u32) -> u32 {
 
 // Whether a sphere is the one in a row, or coincides with it.
 fn is_same(sphere: vec4<u32>, row: u32, known: u32) -> bool {
-    return known == row || (known < UNKNOWN - 1u && all(sphere_row(known) == sphere));
+    return known == row
+        || (known < UNKNOWN - 1u && all((sphere_row(known) & vec4<u32>(~0u, ~0u, ~0u, ~NEVER_HIT)) == sphere));
 }
 
 // Takes note of a hit that is certain, in an interval of distances.

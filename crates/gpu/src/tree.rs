@@ -7,7 +7,7 @@ use crate::stages::Kernel;
 use crate::times::{QueryStage, QueryTimes, Stopwatch};
 use spherule_core::internals::bvh::{Any, Closest, Query, Tracer, Tree, UNKNOWN, decide_found};
 use spherule_core::internals::ray::{Hits, MISS, Rays};
-use spherule_core::internals::spheres::{LEAF, SphereBlock};
+use spherule_core::internals::spheres::{LEAF, SphereBlock, Spheres};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Columns that the spheres may be cut into.
@@ -20,7 +20,7 @@ const BATCH: usize = 1 << 20;
 const SPHERE: usize = 4;
 const RAY: usize = 12;
 
-/// The bit of a radius where there is no sphere.
+/// The bit of a radius of what is never hit: where there is no sphere, or an equal one before it.
 const NONE: u32 = 1 << 31;
 
 /// A distance that counts as infinite.
@@ -109,19 +109,20 @@ impl DeviceTree {
     #[doc(hidden)]
     pub fn cut(device: &Arc<Device>, tree: Tree, most: u64) -> Result<Self, DeviceError> {
         device.check()?;
-        let row = size_of::<[u32; SPHERE]>();
-        let blocks = tree.spheres.blocks();
-        let brick_bits = (most / row as u64).max(LEAF as u64).ilog2().min(30);
-        if blocks.len() * LEAF > BRICKS << brick_bits {
+        let bytes = size_of::<[u32; SPHERE]>();
+        let rows = tree.spheres.blocks().len() * LEAF;
+        let brick_bits = (most / bytes as u64).max(LEAF as u64).ilog2().min(30);
+        if rows > BRICKS << brick_bits {
             let what = format!("{} spheres", tree.spheres.len());
             return Err(DeviceError::Memory { what });
         }
         let mut columns =
             vec![device.filled("nodes", bytemuck::cast_slice(&nodes::rows(tree.bvh)))?];
-        let mut bricks = blocks.chunks((1 << brick_bits) / LEAF);
+        let spheres = sphere_rows(tree.spheres);
+        let mut bricks = spheres.chunks(1 << brick_bits);
         for _ in 0..BRICKS {
-            let rows = bricks.next().map(sphere_rows).unwrap_or_default();
-            columns.push(device.filled("spheres", bytemuck::cast_slice(&rows))?);
+            let brick = bricks.next().unwrap_or_default();
+            columns.push(device.filled("spheres", bytemuck::cast_slice(brick))?);
         }
         Ok(Self {
             device: Arc::clone(device),
@@ -129,7 +130,7 @@ impl DeviceTree {
             single: tree.spheres.precise.is_empty(),
             columns,
             brick_bits,
-            is_cut: blocks.len() * LEAF > 1 << brick_bits,
+            is_cut: rows > 1 << brick_bits,
             batch: BATCH.min(most as usize / size_of::<[u32; RAY]>()),
             lanes: Mutex::default(),
             tally: Mutex::default(),
@@ -410,8 +411,9 @@ pub(crate) fn unknown(found: &[u32]) -> u64 {
     found.iter().filter(|&&sphere| sphere == UNKNOWN).count() as u64
 }
 
-/// Returns the spheres of blocks one by one.
-fn sphere_rows(blocks: &[SphereBlock]) -> Vec<[u32; SPHERE]> {
+/// Returns the spheres of blocks one by one. Of those that coincide, only the first in the user's order is ever hit: the
+/// others are as if they were not there.
+fn sphere_rows(spheres: &Spheres) -> Vec<[u32; SPHERE]> {
     let sphere = |block: &SphereBlock, lane: usize| {
         // Not -0: equal spheres are equal bits.
         let number = |x: f32| (x + 0.0).to_bits();
@@ -419,7 +421,13 @@ fn sphere_rows(blocks: &[SphereBlock]) -> Vec<[u32; SPHERE]> {
         let radius = if radius.is_nan() { NONE } else { radius.to_bits() };
         [number(block.x[lane]), number(block.y[lane]), number(block.z[lane]), radius]
     };
-    blocks.iter().flat_map(|block| (0..LEAF).map(move |lane| sphere(block, lane))).collect()
+    let blocks = spheres.blocks().iter();
+    let mut rows: Vec<_> =
+        blocks.flat_map(|block| (0..LEAF).map(move |lane| sphere(block, lane))).collect();
+    for row in spheres.later_of_equals() {
+        rows[row as usize][SPHERE - 1] |= NONE;
+    }
+    rows
 }
 
 /// Returns a ray as the kernel reads it.

@@ -1,7 +1,7 @@
 // Tests a sphere in single precision, by the bounds that docs/gpu.md derives.
 fn test_sphere(ray: ptr<function, Ray>, search: ptr<function, Search>, row: u32) {
     let bits = sphere_row(row);
-    if (bits.w & 0x80000000u) != 0u {
+    if (bits.w & NEVER_HIT) != 0u {
         return;
     }
     let center = bitcast<vec3<f32>>(bits.xyz);

@@ -8,7 +8,7 @@ const MORE: f32 = 1.0 + 0x1p-21f;
 
 fn test_sphere(ray: ptr<function, Ray>, search: ptr<function, Search>, row: u32) {
     let bits = sphere_row(row);
-    if (bits.w & 0x80000000u) != 0u {
+    if (bits.w & NEVER_HIT) != 0u {
         return;
     }
     let radius = f64(bitcast<f32>(bits.w));

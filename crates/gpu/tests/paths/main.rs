@@ -3,10 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "tests fail so")]
 #![allow(clippy::print_stdout, reason = "shares of unknown paths, with --nocapture")]
 
+#[path = "../common/mod.rs"]
 mod common;
+mod random_scene;
 
 use common::device;
 use glam::DVec3;
+use random_scene::random_scene;
 use spherule_gpu::{Answered, Device, DeviceError, DeviceTree, Integrator as DeviceIntegrator};
 use spherule_render::World;
 use spherule_render::bvh::Tree;
@@ -703,4 +706,40 @@ fn what_devices_do_not_do_is_told() {
         scene.lights = vec![light; 5];
     };
     assert_eq!(told(&suns), Some("many suns are mirrored"));
+}
+
+#[test]
+fn random_scenes_are_the_processors() {
+    let Some(device) = device() else { return };
+    let mut all = Answered::default();
+    // For more scenes.
+    let count = std::env::var("SPHERULE_SCENES").map_or(150, |count| count.parse().unwrap());
+    for seed in 0..count {
+        // The file of a scene that fails stays.
+        let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("random-{seed}.toml"));
+        std::fs::write(&file, random_scene(seed)).unwrap();
+        let scene = Scene::load(&file).unwrap();
+        let world = World::build(&scene).unwrap();
+        if not_followed(&world, &scene.settings).is_none() {
+            all += compare(&file.display().to_string(), &scene, &device);
+        }
+        std::fs::remove_file(&file).unwrap();
+    }
+    assert!(all.paths > 900 * count, "{all:?}");
+    // In some the camera is inside of many spheres of glass.
+    assert!(all.unknown_paths * 20 < all.paths, "{all:?}");
+}
+
+#[test]
+fn coincident_spheres_are_known() {
+    let Some(device) = device() else { return };
+    let mut scene = named("weekend.toml");
+    let count = scene.spheres.len();
+    for row in 0..count {
+        let other = scene.spheres.material_of((row + 1) % count);
+        let (center, radius) = (scene.spheres.center(row), scene.spheres.radius[row]);
+        scene.spheres.push(center, radius, other, Rgb::ONE);
+    }
+    let found = compare("coincident spheres", &scene, &device);
+    assert!(found.unknown_paths * 100 < found.paths, "{found:?}");
 }
