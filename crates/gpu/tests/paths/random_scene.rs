@@ -74,7 +74,9 @@ impl RandomScene {
         self.line("[render]\ndenoise = \"off\"");
         let (width, height) = (12 + random.index(20), 8 + random.index(20));
         writeln!(self.text, "size = [{width}, {height}]").unwrap();
-        self.set("spp", 1 + random.index(5));
+        // Sometimes in several passes.
+        let most = if random.index(8) == 0 { 50 } else { 5 };
+        self.set("spp", 1 + random.index(most));
         self.set("seed", random.index(1000));
         match random.index(8) {
             0 => {
