@@ -2,6 +2,7 @@
 
 use crate::common::*;
 use glam::DVec3;
+use spherule_render::scene::LightChoice;
 use std::f64::consts::PI;
 
 /// Returns the Fresnel reflectance of glass.
@@ -109,4 +110,21 @@ fn equal_indices_do_not_refract() {
     let point = at_impact(0.5);
     let estimate = probe(&mut scene, point, point + DVec3::Z * 2.0);
     assert_expected(estimate, in_gradient(0.5, 1.5), "nested spheres of one index");
+}
+
+/// A surface of glass inside of a smaller glass sphere is no interface. Light samples don't pass it, but paths do: a sphere of
+/// radius 0.3 lights a point at a distance of 0.8 as in air.
+#[test]
+fn light_from_behind_a_surface_inside_of_other_glass_is_found() {
+    for light_choice in [LightChoice::Tree, LightChoice::Power, LightChoice::Uniform] {
+        let mut scene = dark();
+        sphere(&mut scene, [-0.5, 0.0, 0.0], 0.2, lambertian(0.5));
+        sphere(&mut scene, [0.5, 0.0, 0.0], 0.3, emitter(1.0, 0.0));
+        sphere(&mut scene, [0.0; 3], 1.0, glass(1.0));
+        sphere(&mut scene, [1.2, 0.0, 0.0], 1.2, glass(1.0));
+        scene.settings.light_choice = light_choice;
+        let eye = DVec3::new(-0.1, 0.3, 0.0);
+        let found = probe(&mut scene, DVec3::new(-0.3, 0.0, 0.0), eye);
+        assert_expected(found, 0.5 * 0.3 * 0.3 / 0.64, &format!("{light_choice:?}"));
+    }
 }

@@ -36,8 +36,8 @@ fn scatter_glass(path: u32, surface: ptr<function, Surface>, outside: f32, choic
         inside = entering != back;
         let color = keep3(material_color(material_at(hit), 2u) * color_at(hit));
         states[path].throughput = keep3(states[path].throughput * color);
-        states[path].previous = next_bounce(states[path].previous, 0.0, false);
     }
+    states[path].previous = next_bounce(states[path].previous, 0.0, false);
     if has(NESTED_GLASS) && inside && !enter_sphere(path, hit) {
         return false;
     }

@@ -300,13 +300,13 @@ fn reflect_or_refract_half(hits: &GlassHits, first: usize, rays: &mut GlassRays)
     rays.inward |= passage.inward.bits() << first;
 }
 
-/// Returns the next states: changed at real interfaces, unchanged at surfaces inside of other glass.
+/// Returns the next states. Surfaces inside of other glass, which are no interfaces, do not color the light; but they stop
+/// shadow rays as all glass does, so that light behind is found by these paths alone.
 #[inline(always)]
 fn update_states(world: &World, tinted: bool, hits: &GlassHits) -> PathStateRow {
     let real = Lanes::lt(F32x16::splat(0.0), F32x16::new(hits.index[1]));
     let state = hits.state;
     let previous = state.previous.next(F32x16::splat(0.0), false);
-    let previous = PreviousBounce(Lanes::select(real, previous.0, state.previous.0));
     let throughput = if tinted { tint(world, real.bits(), hits) } else { state.throughput };
     PathStateRow { throughput, previous, ..state }
 }
