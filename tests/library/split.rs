@@ -127,8 +127,7 @@ fn merged_parts_equal_the_whole() {
     }
 }
 
-/// Where the camera sees many small lights in a pixel, their rays are more than wait at once, of each number of samples
-/// others.
+/// Parts of an image of many small lights: more shadow rays than are traced at once, and other ones at once in each part.
 #[test]
 fn images_of_many_lights_can_be_split() {
     let mut scene = furnace();
