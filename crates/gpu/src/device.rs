@@ -3,7 +3,7 @@
 use crate::error::DeviceError;
 use crate::probe::{self, Probe};
 use crate::stages::Kernel;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, mpsc};
 use std::time::Duration;
 
 /// The longest that one dispatch may take; longer is a device that hangs.
@@ -15,6 +15,9 @@ const PATH_BUFFERS: u32 = 23;
 
 /// What kernels of paths need beside: double precision, and its bits as integers.
 const FOR_PATHS: wgpu::Features = wgpu::Features::SHADER_F64.union(wgpu::Features::SHADER_INT64);
+
+/// What a device was asked for, until then.
+pub(crate) type Submitted = wgpu::SubmissionIndex;
 
 /// A clock.
 const FOR_MEASUREMENTS: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY;
@@ -328,31 +331,11 @@ impl Device {
         Work { device: self, encoder: self.handle.create_command_encoder(&descriptor) }
     }
 
-    /// Asks for a kernel over these buffers to be run for so many rows.
-    pub(crate) fn run(
-        &self,
-        kernel: Kernel,
-        buffers: &[&wgpu::Buffer],
-        rows: usize,
-    ) -> Result<(), DeviceError> {
-        let mut work = self.work();
-        work.run(kernel, buffers, Size::Rows(rows))?;
-        work.submit();
-        Ok(())
-    }
-
-    /// Asks for the first bytes of a buffer to be copied to another.
-    pub(crate) fn copy(&self, from: &wgpu::Buffer, to: &wgpu::Buffer, bytes: u64) {
-        let mut work = self.work();
-        work.copy((from, 0), to, bytes);
-        work.submit();
-    }
-
-    fn submit(&self, record: impl FnOnce(&mut wgpu::CommandEncoder)) {
+    fn submit(&self, record: impl FnOnce(&mut wgpu::CommandEncoder)) -> Submitted {
         let mut encoder =
             self.handle.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         record(&mut encoder);
-        self.queue.submit([encoder.finish()]);
+        self.queue.submit([encoder.finish()])
     }
 
     /// Runs a kernel in groups of 64 invocations, and copies the first bytes of a buffer to another.
@@ -361,11 +344,11 @@ impl Device {
         (kernel, group): (&wgpu::ComputePipeline, &wgpu::BindGroup),
         invocations: usize,
         (from, to, bytes): (&wgpu::Buffer, &wgpu::Buffer, u64),
-    ) {
+    ) -> Submitted {
         self.submit(|encoder| {
             pass(encoder, (kernel, group), Size::Rows(invocations), None);
             encoder.copy_buffer_to_buffer(from, 0, to, 0, bytes);
-        });
+        })
     }
 
     /// Returns how long a kernel takes by the device's own clock: the median of runs in a row, so that the device is awake.
@@ -389,7 +372,7 @@ impl Device {
         let ticks = self.buffer("ticks", BYTES, usage)?;
         let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
         let copy = self.buffer("ticks to read", BYTES, usage)?;
-        self.submit(|encoder| {
+        let submitted = self.submit(|encoder| {
             for run in 0..RUNS as u32 {
                 let ticks = Some((&set, 2 * run));
                 pass(encoder, (kernel, group), Size::Rows(invocations), ticks);
@@ -398,7 +381,7 @@ impl Device {
             encoder.copy_buffer_to_buffer(&ticks, 0, &copy, 0, BYTES);
         });
         let mut read = [[0_u64; 2]; RUNS];
-        self.read(&copy, BYTES, |view| read = bytemuck::pod_read_unaligned(view))?;
+        self.read((&copy, BYTES), submitted, |view| read = bytemuck::pod_read_unaligned(view))?;
         let mut ticks = read.map(|[start, end]| end.saturating_sub(start));
         ticks.sort_unstable();
         let nanoseconds = ticks[RUNS / 2] as f64 * f64::from(self.queue.get_timestamp_period());
@@ -412,45 +395,53 @@ impl Device {
         rows: &mut [u8],
     ) -> Result<(), DeviceError> {
         let bytes = rows.len() as u64;
-        self.copy(buffer, copy, bytes);
-        self.read(copy, bytes, |view| rows.copy_from_slice(view))
+        let mut work = self.work();
+        work.copy((buffer, 0), copy, bytes);
+        self.read((copy, bytes), work.submit(), |view| rows.copy_from_slice(view))
     }
 
     /// Waits for all that the device was asked to do, writes to buffers included.
     pub(crate) fn finish(&self) -> Result<(), DeviceError> {
-        self.queue.submit([]);
-        self.wait()
+        self.wait(self.queue.submit([]))
     }
 
-    /// Waits for all that was submitted.
-    fn wait(&self) -> Result<(), DeviceError> {
-        let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
-        match self.handle.poll(wait) {
-            Ok(_) => self.check(),
-            Err(error) => {
-                self.faults.add(DeviceError::Lost(error.to_string()));
-                self.check()
-            }
+    /// Waits for what was submitted until then.
+    fn wait(&self, submitted: Submitted) -> Result<(), DeviceError> {
+        let submission_index = Some(submitted);
+        let wait = wgpu::PollType::Wait { submission_index, timeout: Some(PATIENCE) };
+        if let Err(error) = self.handle.poll(wait) {
+            self.faults.add(DeviceError::Lost(error.to_string()));
         }
+        self.check()
     }
 
-    /// Hands over the bytes of a buffer that can be mapped, once all that was submitted is done.
+    /// Hands over the first bytes of a buffer that can be mapped, once what was submitted until then is done.
     pub(crate) fn read(
         &self,
-        buffer: &wgpu::Buffer,
-        bytes: u64,
+        (buffer, bytes): (&wgpu::Buffer, u64),
+        submitted: Submitted,
         mut take: impl FnMut(&[u8]),
     ) -> Result<(), DeviceError> {
-        let faults = self.faults.clone();
+        let (told, mapped) = mpsc::channel();
         buffer.map_async(wgpu::MapMode::Read, 0..bytes, move |mapped| {
-            if let Err(error) = mapped {
-                faults.add(DeviceError::Lost(error.to_string()));
-            }
+            // Nobody listens after a fault.
+            let _ = told.send(mapped);
         });
-        self.wait()?;
-        match buffer.get_mapped_range(0..bytes) {
-            Ok(view) => take(&view),
-            Err(error) => self.faults.add(DeviceError::Lost(error.to_string())),
+        self.wait(submitted)?;
+        // Another thread that waits may be the one that tells.
+        let lost = match mapped.recv_timeout(PATIENCE) {
+            Ok(Ok(())) => match buffer.get_mapped_range(0..bytes) {
+                Ok(view) => {
+                    take(&view);
+                    None
+                }
+                Err(error) => Some(error.to_string()),
+            },
+            Ok(Err(error)) => Some(error.to_string()),
+            Err(error) => Some(error.to_string()),
+        };
+        if let Some(error) = lost {
+            self.faults.add(DeviceError::Lost(error));
         }
         buffer.unmap();
         self.check()
@@ -513,8 +504,8 @@ impl Work<'_> {
     }
 
     /// Asks for all of it.
-    pub(crate) fn submit(self) {
-        self.device.queue.submit([self.encoder.finish()]);
+    pub(crate) fn submit(self) -> Submitted {
+        self.device.queue.submit([self.encoder.finish()])
     }
 }
 

@@ -1,7 +1,7 @@
 //! Sums of pixels, which a device adds up.
 
 use crate::columns::Columns;
-use crate::device::Device;
+use crate::device::{Device, Size};
 use crate::error::DeviceError;
 use crate::stages::Kernel;
 use spherule_render::world::{DevicePath, DevicePixel, DevicePixels};
@@ -16,10 +16,15 @@ pub(crate) fn add_up(
 ) -> Result<(), DeviceError> {
     device.write(&columns.unsummed, &0_u32.to_ne_bytes());
     let Columns { params, paths, pixel_sums, samples: left, unsummed, .. } = columns;
-    device.run(Kernel::Film, &[params, paths, pixel_sums, left, unsummed], pixels)?;
+    let mut work = device.work();
+    let buffers = [params, paths, pixel_sums, left, unsummed];
+    work.run(Kernel::Film, &buffers, Size::Rows(pixels))?;
     found.pixels.resize(pixels, DevicePixel::default());
-    let rows = bytemuck::cast_slice_mut(&mut found.pixels);
-    device.read_rows((pixel_sums, &columns.pixel_sums_to_read), rows)?;
+    let rows: &mut [u8] = bytemuck::cast_slice_mut(&mut found.pixels);
+    let to_read = &columns.pixel_sums_to_read;
+    let bytes = rows.len() as u64;
+    work.copy((pixel_sums, 0), to_read, bytes);
+    device.read((to_read, bytes), work.submit(), |view| rows.copy_from_slice(view))?;
     let unsummed = found.pixels.iter().filter(|pixel| pixel.place().is_some()).count();
     found.samples.resize(unsummed * samples, DevicePath::default());
     if unsummed == 0 {

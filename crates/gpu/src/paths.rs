@@ -17,7 +17,7 @@ use spherule_render::world::{
     DeviceIntegration, DeviceIntegrator, DeviceJob, DeviceLightChoice, DevicePaths, DevicePixels,
 };
 use std::ops::Range;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use wgpu::BufferUsages as Usage;
 
 /// Shadow rays of a path that are traced at once in Whitted ray tracing.
@@ -48,8 +48,10 @@ struct JobPaths {
     sky: wgpu::Buffer,
     sobol: wgpu::Buffer,
     offsets: wgpu::Buffer,
-    /// Columns of paths, of the size of the last batch or larger.
-    columns: Mutex<Option<Columns>>,
+    /// Columns of paths that no batch uses now.
+    columns: Mutex<Vec<Columns>>,
+    /// Whether all kernels are compiled.
+    compiled: OnceLock<Result<(), DeviceError>>,
 }
 
 impl Integrator {
@@ -179,6 +181,7 @@ impl JobPaths {
             sobol: filled("direction vectors", bytemuck::cast_slice(&job.sobol))?,
             offsets: filled("filter", bytemuck::cast_slice(job.offsets.unwrap_or_default()))?,
             columns: Mutex::default(),
+            compiled: OnceLock::new(),
         })
     }
 
@@ -200,8 +203,10 @@ impl JobPaths {
             *found = DevicePixels::default();
             return Ok(());
         }
-        let mut kept = self.columns.lock().unwrap_or_else(PoisonError::into_inner);
-        let columns = match kept.take().filter(|columns| columns.fit(pixels.len(), count)) {
+        self.compiled.get_or_init(|| self.compile()).clone()?;
+        let kept = || self.columns.lock().unwrap_or_else(PoisonError::into_inner);
+        let last = kept().pop();
+        let columns = match last.filter(|columns| columns.fit(pixels.len(), count)) {
             Some(columns) => columns,
             None => Columns::new(device, [pixels.len(), count], self.needs)?,
         };
@@ -209,8 +214,69 @@ impl JobPaths {
         self.follow_all(&columns, params)?;
         film::add_up(device, &columns, [pixels.len(), samples.len()], found)?;
         // Not after a fault: what is left of such buffers is unknown.
-        *kept = Some(columns);
+        kept().push(columns);
         Ok(())
+    }
+
+    /// Compiles all kernels of the job, side by side.
+    fn compile(&self) -> Result<(), DeviceError> {
+        let kernels = self.kernels();
+        std::thread::scope(|scope| {
+            let compile = |kernel| scope.spawn(move || self.device().compiled(kernel).map(drop));
+            let all: Vec<_> = kernels.into_iter().map(compile).collect();
+            all.into_iter().try_for_each(|kernel| match kernel.join() {
+                Ok(compiled) => compiled,
+                Err(panicked) => std::panic::resume_unwind(panicked),
+            })
+        })
+    }
+
+    /// Returns the kernels of all stages of the job.
+    fn kernels(&self) -> Vec<Kernel> {
+        let shadows = [Stage::ShadowHits, Stage::Shadows];
+        let has_shadows = self.needs.shadows > 0 || self.needs.caustics;
+        let mut stages = vec![Stage::Generate(0), Stage::FirstHits];
+        match self.integration {
+            DeviceIntegration::Occlusion { .. } => {
+                stages.push(Stage::Occlusion);
+                stages.extend(shadows);
+            }
+            DeviceIntegration::Paths { .. } => {
+                stages.push(Stage::Surfaces);
+                stages.extend(self.kinds.iter().map(|&kind| Stage::Path(kind)));
+                stages.extend(shadows.iter().filter(|_| has_shadows));
+            }
+            DeviceIntegration::Whitted { .. } => {
+                let steps = [WhittedStep::Light, WhittedStep::Shadows, WhittedStep::Bounce];
+                stages.extend(steps.map(Stage::Whitted));
+                stages.extend(shadows);
+            }
+        }
+        if self.needs.caustics {
+            stages.extend([Stage::Caustics, Stage::SecondSegments]);
+        }
+        let kernels = stages.into_iter().flat_map(|stage| {
+            let kernel = self.kernel(stage);
+            std::iter::once(kernel).chain(self.tree.hits_again(kernel))
+        });
+        kernels.chain([Kernel::Film]).collect()
+    }
+
+    /// Returns the kernel of a stage.
+    fn kernel(&self, stage: Stage) -> Kernel {
+        let caustics = self.needs.caustics;
+        match stage {
+            Stage::Generate(_) => Kernel::Generate,
+            Stage::FirstHits => self.tree.queued_hits(false),
+            Stage::Occlusion => Kernel::Occlusion,
+            Stage::Surfaces => Kernel::Surfaces { caustics },
+            Stage::Path(kind) => Kernel::Path { caustics, kind },
+            Stage::Whitted(step) => Kernel::Whitted(step),
+            Stage::ShadowHits => self.tree.queued_hits(true),
+            Stage::Caustics => Kernel::Caustics,
+            Stage::SecondSegments => Kernel::SecondSegments,
+            Stage::Shadows => Kernel::Shadows,
+        }
     }
 
     /// Writes the pixels of a batch, the queue of all its paths and the numbers of its first bounces; returns those of the
@@ -256,23 +322,20 @@ impl JobPaths {
         let [queue, next] = [&queues[queue], &queues[1 - queue]];
         let mut size = Size::Queue(queue);
         let mut buffers = vec![params];
-        let kernel = match stage {
+        match stage {
             Stage::Generate(count) => {
                 buffers.extend([numbers, pixels, sobol, offsets, rays, sequences, states, paths]);
                 buffers.push(queue);
                 size = Size::Rows(count);
-                Kernel::Generate
             }
             Stage::FirstHits => {
                 buffers.push(self.tree.nodes());
                 buffers.extend(self.tree.spheres());
                 buffers.extend([rays, found, queue]);
-                self.tree.queued_hits(false)
             }
             Stage::Occlusion => {
                 buffers.extend(self.surface_buffers(columns));
                 buffers.extend([&shadows.lights, paths, queue, &shadows.queue, sky]);
-                Kernel::Occlusion
             }
             Stage::Surfaces => {
                 for &kind in &self.kinds {
@@ -283,44 +346,38 @@ impl JobPaths {
                 buffers.extend([&self.appearance, &self.materials, found, rays, states, paths]);
                 buffers.extend([&shadows.rays, queue, &columns.kind_queues, lights]);
                 buffers.extend([&columns.interiors, sky, &columns.caustics.chains]);
-                Kernel::Surfaces { caustics: self.needs.caustics }
             }
             Stage::Path(kind) => {
                 buffers.extend(self.bounce_buffers(columns, &columns.kind_queues, next));
                 size = Size::QueueAt(&columns.kind_queues, columns.kind_offset(kind));
-                Kernel::Path { caustics: self.needs.caustics, kind }
             }
-            Stage::Whitted(step) => {
+            Stage::Whitted(_) => {
                 buffers.extend(self.bounce_buffers(columns, queue, next));
                 buffers.push(pixels);
-                Kernel::Whitted(step)
             }
             Stage::ShadowHits => {
                 buffers.push(self.tree.nodes());
                 buffers.extend(self.tree.spheres());
                 buffers.extend([shadow_rays, shadow_found, &shadows.queue]);
                 size = Size::Queue(&shadows.queue);
-                self.tree.queued_hits(true)
             }
             Stage::Caustics => {
                 buffers.extend(self.surface_buffers(columns));
                 buffers.extend([states, paths, &shadows.rays, &shadows.lights]);
                 buffers.extend([queue, &shadows.queue, lights]);
                 buffers.extend([&columns.caustics.chains, &columns.caustics.seconds]);
-                Kernel::Caustics
             }
             Stage::SecondSegments => {
                 buffers.extend([numbers, shadow_rays, shadow_found, paths, queue]);
                 buffers.push(&shadows.queue);
                 buffers.extend([&columns.caustics.chains, &columns.caustics.seconds]);
-                Kernel::SecondSegments
             }
             Stage::Shadows => {
                 buffers.extend([shadow_rays, &shadows.lights, shadow_found, paths, queue]);
                 buffers.extend([&columns.caustics.chains, &columns.caustics.seconds]);
-                Kernel::Shadows
             }
-        };
+        }
+        let kernel = self.kernel(stage);
         work.run(kernel, &buffers, size)?;
         match self.tree.hits_again(kernel) {
             Some(again) => work.run(again, &buffers, size),
@@ -396,13 +453,13 @@ impl JobPaths {
             }
             let bytes = columns.head_to_read.size();
             work.copy((&columns.queues[queue], 0), &columns.head_to_read, bytes);
-            work.submit();
+            let submitted = work.submit();
             if depth - params.bounce < BOUNCES as u32 {
                 return Ok(());
             }
             params.bounce += BOUNCES as u32;
             let mut head = Columns::head(0);
-            device.read(&columns.head_to_read, bytes, |view| {
+            device.read((&columns.head_to_read, bytes), submitted, |view| {
                 head = bytemuck::pod_read_unaligned(view);
             })?;
             if head == Columns::head(0) {
@@ -450,9 +507,9 @@ impl JobPaths {
             self.stage(&mut work, Stage::Whitted(WhittedStep::Bounce), columns, queue)?;
             let bytes = columns.head_to_read.size();
             work.copy((&columns.queues[1 - queue], 0), &columns.head_to_read, bytes);
-            work.submit();
+            let submitted = work.submit();
             let mut head = Columns::head(0);
-            device.read(&columns.head_to_read, bytes, |view| {
+            device.read((&columns.head_to_read, bytes), submitted, |view| {
                 head = bytemuck::pod_read_unaligned(view);
             })?;
             if head == Columns::head(0) {

@@ -1,6 +1,6 @@
 //! The arithmetic of a device, found by test.
 
-use crate::device::Device;
+use crate::device::{Device, Size};
 use crate::error::DeviceError;
 use crate::stages::Kernel;
 use crate::tree::Params;
@@ -118,12 +118,11 @@ fn are_like_the_processor(device: &Device, fused: bool) -> Result<bool, DeviceEr
     let output = device.buffer("results", bytes, output)?;
     let copy = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
     let copy = device.buffer("results to read", bytes, copy)?;
-    device.run(Kernel::Doubles { fused }, &[&numbers, &input, &output], operands.len())?;
-    device.copy(&output, &copy, bytes);
+    let (mut work, size) = (device.work(), Size::Rows(operands.len()));
+    work.run(Kernel::Doubles { fused }, &[&numbers, &input, &output], size)?;
+    work.submit();
     let mut results = vec![[0.0; DOUBLES]; operands.len()];
-    device.read(&copy, bytes, |view| {
-        bytemuck::cast_slice_mut(&mut results).copy_from_slice(view);
-    })?;
+    device.read_rows((&output, &copy), bytemuck::cast_slice_mut(&mut results))?;
     let own = |&[x, y, z]: &[f64; 3]| {
         let [a, b, c] = [x, y, z].map(|x| x as f32);
         let centered = 2.0 * (a - 1.0) - 1.0_f32.next_down();
@@ -199,9 +198,9 @@ fn compute(device: &Device, operands: &[[f32; 4]]) -> Result<Vec<[f32; 8]>, Devi
     let copy = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
     let copy = device.buffer("results to read", bytes, copy)?;
     let group = device.bind(&kernel, &[&input, &output]);
-    device.dispatch((&kernel, &group), operands.len(), (&output, &copy, bytes));
+    let submitted = device.dispatch((&kernel, &group), operands.len(), (&output, &copy, bytes));
     let mut results = vec![[0.0; 8]; operands.len()];
-    device.read(&copy, bytes, |view| {
+    device.read((&copy, bytes), submitted, |view| {
         bytemuck::cast_slice_mut(&mut results).copy_from_slice(view);
     })?;
     Ok(results)

@@ -374,16 +374,16 @@ impl DeviceTree {
         buffers.extend([&lane.rays, &lane.found]);
         let group = self.device.bind(kernel, &buffers);
         let copy = (&lane.found, &lane.copy, bytes);
-        self.device.dispatch((kernel, &group), found.len(), copy);
+        let mut submitted = self.device.dispatch((kernel, &group), found.len(), copy);
         if let Some(again) = again {
             let again = self.device.compiled(again)?;
             let group = self.device.bind(again, &buffers);
-            self.device.dispatch((again, &group), found.len(), copy);
+            submitted = self.device.dispatch((again, &group), found.len(), copy);
         }
         watch.end(QueryStage::Kernel, &self.device)?;
         // Of the first search: after it, few rays are left.
         watch.clock(|| self.device.clock((kernel, &group), found.len()))?;
-        self.device.read(&lane.copy, bytes, |view| {
+        self.device.read((&lane.copy, bytes), submitted, |view| {
             bytemuck::cast_slice_mut(found).copy_from_slice(view);
         })?;
         watch.end(QueryStage::Read, &self.device)

@@ -67,7 +67,7 @@ impl Attached {
         };
         vec![
             format!(
-                "device: {name} ({backend}), with {bytes} of spheres and tree, follows paths from the camera to their ends"
+                "device: {name} ({backend}), with {bytes} of spheres and tree, follows paths from the camera to their ends, and so does the processor"
             ),
             format!(
                 "its arithmetic: {}; the processor follows the paths that the device is not certain of, and images are the processor's to the byte{but}",

@@ -41,10 +41,6 @@ pub(super) fn notes(job: &Job, scene: &Scene, world: &World) -> Vec<String> {
         "--lanes",
         "--traversal scalar and stream trace no packets",
     );
-    let device = world.device_paths.is_some();
-    let on_device = "a GPU follows the paths";
-    note(job.speed.lanes.is_some() && !alone, device, "--lanes", on_device);
-    note(job.speed.traversal != Traversal::Auto, device, "--traversal", on_device);
     let encoding = job.encoding;
     let linear = job.format.is_linear();
     let holds = format!("{} files store linear radiance", job.format);

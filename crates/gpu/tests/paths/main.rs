@@ -633,7 +633,7 @@ fn renders_that_are_resumed_or_meet_an_error_are_the_processors() {
     assert_eq!((found.image, found.samples), (exact.image, exact.samples));
     let found = render(&world, &measured.settings, &statistics).unwrap();
     assert_eq!((found.image, found.statistics), (expected.image, expected.statistics));
-    assert!(on_device.tally().paths > 100_000, "{:?}", on_device.tally());
+    assert!(on_device.tally().paths > 40_000, "{:?}", on_device.tally());
     assert_eq!(device.fault(), None);
 }
 
@@ -655,9 +655,9 @@ fn parts_of_both_merge_to_the_whole() {
     let first = run(&world, part(0..13));
     let on_device = attach(&mut world, &device);
     let second = run(&world, part(13..40));
-    // Without the tiles that see no sphere.
+    // The first of three passes at least, without the tiles that see no sphere.
     let paths = on_device.tally().paths;
-    assert!(paths > 45 * 34 * 27 / 2 && paths.is_multiple_of(27), "{paths}");
+    assert!(paths > 45 * 34 * 3 / 2, "{paths}");
     let mut film = first.film().clone();
     assert!(film.merge(second.film().clone()));
     assert_eq!(film.resolve(), whole.image);

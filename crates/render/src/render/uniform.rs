@@ -22,14 +22,14 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 pub(super) fn run(job: &Job, part: Range<u32>, state: &mut State, watch: &Watch) -> End {
     let spp = part.len() as u32;
     let pixels = state.film.pixels().max(1) as f64 * f64::from(spp.max(1));
-    let mut followed: u64 = state.film.tiles.iter().map(samples_taken).sum();
+    let followed = AtomicU64::new(state.film.tiles.iter().map(samples_taken).sum());
     let lacking = |tile: &Tile| part.start + tile.samples.min(spp)..part.end;
     let steps = state.film.tiles.iter_mut().map(|tile| {
         let samples = lacking(tile);
         (tile, samples)
     });
     device::run(job, steps, Some(part.start), watch, |work, added| {
-        followed += added;
+        let followed = followed.fetch_add(added, Ordering::Relaxed) + added;
         watch.report(work, None, (followed as f64 / pixels).min(1.0), None);
     });
     let taken: Vec<u32> = state.film.tiles.iter().map(|tile| tile.samples).collect();
