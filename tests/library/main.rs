@@ -11,6 +11,7 @@ mod adaptive;
 mod bodies;
 mod ellipsoids;
 mod layers;
+mod random_scenes;
 mod readers;
 mod resume;
 mod scenes;

@@ -4,6 +4,7 @@
 //! - [`stress`]: intersection tests compared with exact arithmetic in numerically hard cases.
 //! - [`paper`]: the recursive ray tracer of "Optimizing Ray Tracing", as a baseline.
 //! - [`workload`]: spheres and rays for measurements of traversal.
+//! - [`random_scene()`]: scenes for comparisons, as files.
 //! - [`report`]: tables and plots, and their conversion to files.
 //!
 //! This crate is internal to the program; anything here may change in any release.
@@ -15,7 +16,10 @@
 pub mod bench;
 #[allow(clippy::disallowed_methods, reason = "a baseline that is timed, not compared")]
 pub mod paper;
+mod random_scene;
 #[allow(clippy::disallowed_methods, reason = "scales of plots, which no image shows")]
 pub mod report;
 pub mod stress;
 pub mod workload;
+
+pub use random_scene::random_scene;

@@ -5,12 +5,11 @@
 
 #[path = "../common/mod.rs"]
 mod common;
-mod random_scene;
 
 use common::device;
 use glam::DVec3;
-use random_scene::random_scene;
 use spherule_gpu::{Answered, Device, DeviceError, DeviceTree, Integrator as DeviceIntegrator};
+use spherule_measure::random_scene;
 use spherule_render::World;
 use spherule_render::bvh::Tree;
 use spherule_render::film::Region;

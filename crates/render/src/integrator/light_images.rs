@@ -147,7 +147,8 @@ impl SeenLights {
         lights.clear();
         for image in self.images.iter().filter(|image| selected(&image.light)) {
             let light = (image.light, image.is_tiny());
-            if image.reaches(pixel, job.filter.radius()) && !lights.contains(&light) {
+            // Images of one light are neighbors.
+            if image.reaches(pixel, job.filter.radius()) && lights.last() != Some(&light) {
                 lights.push(light);
             }
         }

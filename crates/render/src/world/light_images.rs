@@ -26,6 +26,10 @@ const TINY: f64 = 1.0;
 /// Edge of a cell of the grid in pixels.
 const CELL: u32 = 16;
 
+/// Most images that a pixel may see, on the average of a cell. Each takes some 40 ns of a sample: 150 of tiny lights were worth
+/// it, thousands in a thumbnail would take it for longer than the picture.
+const CROWD: f64 = 512.0;
+
 /// Images of lights, by cells of the picture.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LightImages {
@@ -73,6 +77,22 @@ impl LightImage {
         let reach = self.radius + corner.min(FILTER_REACH as f32);
         pixel.distance_squared(self.center) <= reach * reach
     }
+
+    /// Returns the distance in pixels from which on no pixel's center sees the light.
+    fn reach(&self) -> f64 {
+        f64::from(self.radius) + FILTER_REACH
+    }
+
+    /// Returns the cells of a picture whose pixels may see the light.
+    fn cells(&self, [width, height]: [u32; 2]) -> impl Iterator<Item = usize> + use<> {
+        let (center, reach) = (self.center.as_dvec2(), self.reach());
+        let columns = width.div_ceil(CELL);
+        let across = cells_between(center.x - reach, center.x + reach, width);
+        let rows = cells_between(center.y - reach, center.y + reach, height);
+        rows.flat_map(move |row| {
+            across.clone().map(move |column| (row * columns + column) as usize)
+        })
+    }
 }
 
 impl SeenLight {
@@ -97,17 +117,12 @@ impl LightImages {
         }
         let mut images = direct_images(world);
         images.extend(mirrored_images(world));
+        let grid = [camera.width, camera.height];
+        let images = without_crowds(images, grid);
         let columns = camera.width.div_ceil(CELL);
         let mut cells = vec![Vec::new(); (columns * camera.height.div_ceil(CELL)) as usize];
         for (image, number) in images.iter().zip(0..) {
-            let reach = DVec2::splat(f64::from(image.radius) + FILTER_REACH);
-            let center = image.center.as_dvec2();
-            let rows = cells_between(center.y - reach.y, center.y + reach.y, world.camera.height);
-            for row in rows {
-                let across =
-                    cells_between(center.x - reach.x, center.x + reach.x, world.camera.width);
-                across.for_each(|column| cells[(row * columns + column) as usize].push(number));
-            }
+            image.cells(grid).for_each(|cell| cells[cell].push(number));
         }
         let mut first = vec![0];
         let mut numbers = Vec::new();
@@ -141,6 +156,23 @@ impl LightImages {
     pub(crate) fn image(&self, number: u32) -> LightImage {
         self.images[number as usize]
     }
+}
+
+/// Returns images without those of lights that are seen in a crowded cell of a picture.
+fn without_crowds(images: Vec<LightImage>, picture: [u32; 2]) -> Vec<LightImage> {
+    let cells = picture.map(|size| size.div_ceil(CELL) as usize);
+    let mut per_pixel = vec![0.0; cells[0] * cells[1]];
+    for image in &images {
+        let area = std::f64::consts::PI * image.reach() * image.reach();
+        let share = (area / f64::from(CELL * CELL)).min(1.0);
+        image.cells(picture).for_each(|cell| per_pixel[cell] += share);
+    }
+    if per_pixel.iter().all(|&images| images <= CROWD) {
+        return images;
+    }
+    let crowded = |image: &LightImage| image.cells(picture).any(|cell| per_pixel[cell] > CROWD);
+    let of_lights = images.chunk_by(|a, b| a.light == b.light);
+    of_lights.filter(|images| !images.iter().any(crowded)).flatten().copied().collect()
 }
 
 /// Returns the cells of an axis, of `size` pixels, that lie between two places.
@@ -260,3 +292,6 @@ fn mirrored_images(world: &World) -> Vec<LightImage> {
     }
     images
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,11 +1,12 @@
-//! Random scenes of what devices follow: coincident, touching and nested spheres, cameras inside of them, at any scale.
+//! Random scenes for comparisons: spheres of all materials under all lights, coincident, touching and nested ones among them, cameras
+//! inside of them, at any scale.
 
 use glam::DVec3;
 use spherule_core::internals::random::Random;
 use std::fmt::{Display, Write};
 
-/// Returns a scene file, the same for a seed.
-pub(crate) fn random_scene(seed: u64) -> String {
+/// Returns a scene file, the same for a seed. Its spheres are opaque or of glass; it has no slices, nor pictures of skies.
+pub fn random_scene(seed: u64) -> String {
     let random = &mut Random::new(seed);
     let scale = if random.coin() { 1.0 } else { random.decades([-4.0, 4.0]) };
     let far = if random.index(4) == 0 { random.decades([0.0, 3.0]) } else { 0.0 };
@@ -44,21 +45,21 @@ const KINDS: [&str; 9] = [
 type Sphere = (DVec3, f64);
 
 impl RandomScene {
-    fn line(&mut self, text: &str) {
-        self.text.push_str(text);
-        self.text.push('\n');
+    fn line(&mut self, text: impl Display) {
+        // A string takes all that is written.
+        let _ = writeln!(self.text, "{text}");
     }
 
     fn set(&mut self, key: &str, value: impl Display) {
-        writeln!(self.text, "{key} = {value}").unwrap();
+        self.line(format_args!("{key} = {value}"));
     }
 
     fn set_name(&mut self, key: &str, name: &str) {
-        writeln!(self.text, "{key} = {name:?}").unwrap();
+        self.line(format_args!("{key} = {name:?}"));
     }
 
     fn set_number(&mut self, key: &str, number: f64) {
-        writeln!(self.text, "{key} = {number:?}").unwrap();
+        self.line(format_args!("{key} = {number:?}"));
     }
 
     fn set_length(&mut self, key: &str, length: f64) {
@@ -67,13 +68,13 @@ impl RandomScene {
 
     fn set_point(&mut self, key: &str, point: DVec3) {
         let point = self.scale * (point + self.offset);
-        writeln!(self.text, "{key} = {:?}", point.to_array()).unwrap();
+        self.line(format_args!("{key} = {:?}", point.to_array()));
     }
 
     fn add_settings(&mut self, random: &mut Random) {
         self.line("[render]\ndenoise = \"off\"");
         let (width, height) = (12 + random.index(20), 8 + random.index(20));
-        writeln!(self.text, "size = [{width}, {height}]").unwrap();
+        self.line(format_args!("size = [{width}, {height}]"));
         // Sometimes in several passes.
         let most = if random.index(8) == 0 { 50 } else { 5 };
         self.set("spp", 1 + random.index(most));
@@ -120,7 +121,7 @@ impl RandomScene {
         let only = (random.index(3) == 0).then(|| random.index(KINDS.len()));
         let names: Vec<String> = (0..count).map(|row| format!("m{row}")).collect();
         for name in &names {
-            writeln!(self.text, "[material.{name}]").unwrap();
+            self.line(format_args!("[material.{name}]"));
             let kind = random.index(KINDS.len());
             self.add_material(random, only.unwrap_or(kind));
         }
@@ -207,7 +208,7 @@ impl RandomScene {
         if random.coin() {
             let normal = random.direction();
             self.line("[ground]");
-            writeln!(self.text, "normal = {:?}", normal.to_array()).unwrap();
+            self.line(format_args!("normal = {:?}", normal.to_array()));
             self.set_length("height", random.between([-3.0, 0.0]) + normal.dot(self.offset));
         }
     }
