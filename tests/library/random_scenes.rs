@@ -1,10 +1,13 @@
-//! Random scenes: means of images that estimate the same light in different ways agree.
+//! Random scenes: images have the same bytes however they are rendered, and means that estimate the same light in different ways
+//! agree.
 
 use crate::common::*;
-use spherule_measure::random_scene;
+use spherule_measure::{random_scene, random_scene_of_all_bodies};
 use spherule_render::World;
-use spherule_render::render::{Options, render};
+use spherule_render::film::Region;
+use spherule_render::render::{Elisions, ImagePart, Options, ResumableRender, render};
 use spherule_render::scene::{Integrator, LightChoice, Roulette, SamplerKind, Scene, Settings};
+use spherule_render::trace::{PacketWidth, Tracer, Traversal};
 use std::ops::Range;
 use std::path::Path;
 
@@ -83,4 +86,84 @@ fn means_do_not_depend_on_how_light_is_sampled() {
         let sigmas = sum / (all.len() as f64).sqrt();
         assert!(sigmas.abs() < SIGMAS, "{name}: {sigmas}");
     }
+}
+
+const ALL: Elisions = Elisions::ALL;
+
+/// Options that change no byte.
+const OPTIONS: [Options; 12] = [
+    traced(Traversal::Brute, PacketWidth::Eight),
+    traced(Traversal::Single, PacketWidth::Eight),
+    traced(Traversal::Stream, PacketWidth::Eight),
+    traced(Traversal::Packet, PacketWidth::One),
+    traced(Traversal::Packet, PacketWidth::Sixteen),
+    eliding(Elisions { empty_tiles: false, ..ALL }),
+    eliding(Elisions { even_background: false, ..ALL }),
+    eliding(Elisions { lens: false, ..ALL }),
+    eliding(Elisions { lights: false, ..ALL }),
+    eliding(Elisions { plane: false, ..ALL }),
+    eliding(Elisions { glass: false, ..ALL }),
+    eliding(Elisions { nearest_occluder: false, ..ALL }),
+];
+
+const USUAL: Options = Options {
+    tracer: Tracer { traversal: Traversal::Auto, width: PacketWidth::Eight },
+    region: None,
+    progress: None,
+    cancel: None,
+    statistics: false,
+    features: false,
+    judge: None,
+    elisions: ALL,
+};
+
+const fn traced(traversal: Traversal, width: PacketWidth) -> Options<'static> {
+    Options { tracer: Tracer { traversal, width }, ..USUAL }
+}
+
+const fn eliding(elisions: Elisions) -> Options<'static> {
+    Options { elisions, ..USUAL }
+}
+
+/// Bodies of all kinds, slices and translucent bodies among them.
+#[test]
+fn bytes_do_not_depend_on_how_images_are_rendered() {
+    let mut compared = 0;
+    for seed in 0..100 {
+        let text = random_scene_of_all_bodies(seed);
+        let scene = Scene::parse(&text, "random", Path::new(".")).expect("a scene");
+        // Slices may have removed all that the camera is to frame.
+        let Ok(world) = World::build(&scene) else { continue };
+        compared += 1;
+        let settings = &scene.settings;
+        let image =
+            |options: &Options| render(&world, settings, options).expect("settings in range").image;
+        let whole = image(&USUAL);
+        assert!(whole.pixels.iter().flatten().all(|x| (0.0..f32::INFINITY).contains(x)), "{seed}");
+        for options in &OPTIONS {
+            let what = (options.tracer, options.elisions);
+            assert!(image(options) == whole, "scene {seed}: {what:?}");
+        }
+        let part = |samples| {
+            let region = Region { x: 0, y: 0, width: settings.width, height: settings.height };
+            let part = ImagePart { samples, ..ImagePart::whole(region, settings.spp) };
+            let mut part =
+                ResumableRender::begin_part(&world, settings, &USUAL, part).expect("a part");
+            part.run(&world, &USUAL);
+            part.film().clone()
+        };
+        let middle = settings.spp / 2;
+        if middle > 0 {
+            let mut film = part(0..middle);
+            assert!(film.merge(part(middle..settings.spp)));
+            assert!(film.resolve() == whole, "scene {seed}: parts");
+        }
+        let region = Region { x: 3, y: 2, width: 7, height: 5 };
+        let cut = image(&Options { region: Some(region), ..USUAL });
+        for (row, pixels) in cut.pixels.chunks(7).enumerate() {
+            let first = (row + 2) * settings.width as usize + 3;
+            assert_eq!(pixels, &whole.pixels[first..first + 7], "scene {seed}: a region");
+        }
+    }
+    assert!(compared > 90, "{compared}");
 }

@@ -2,7 +2,8 @@
 
 use crate::common::{
     assert_every_pixel, assert_expected, dark, emitter, furnace, glass, ground, lambertian, look,
-    look_parallel, material, mean, menagerie, noon, probe, render_scene, render_scene_with, sphere,
+    look_parallel, material, mean, menagerie, mirror, noon, probe, render_scene, render_scene_with,
+    sphere,
 };
 use glam::{DVec3, Vec3};
 use spherule_render::layers::{Layer, layers};
@@ -325,6 +326,35 @@ fn hidden_parts_keep_their_shadow() {
         let beside = DVec3::X * 2.0;
         assert!((radiance(&scene, side, beside) - sunny).abs() < 1e-6, "{mode:?}");
     }
+}
+
+/// Lamps in the picture are sampled where a mirror is in the scene; all paths are of one batch here.
+#[test]
+fn hidden_lamps_are_seen_in_mirrors_alone() {
+    let mut scene = dark();
+    sphere(&mut scene, [-1.0, 0.0, 0.0], 0.6, mirror());
+    sphere(&mut scene, [0.42, 0.0, 0.0], 0.35, emitter(10.0, 0.0));
+    look(&mut scene, DVec3::new(0.0, 0.0, 8.0), DVec3::ZERO, 30.0);
+    let sums = |scene: &Scene| {
+        let pixels = render_scene(scene).image.pixels;
+        let sum = |columns: std::ops::Range<usize>| -> f32 {
+            pixels.chunks(16).flat_map(|row| &row[columns.clone()]).map(|pixel| pixel[0]).sum()
+        };
+        [sum(0..8), sum(8..16)]
+    };
+    let [mirrored, direct] = sums(&scene);
+    assert!(mirrored > 0.01 && direct > 0.1, "{mirrored} {direct}");
+    scene.slices = vec![slice(DVec3::X, 0.3, SliceMode::Hide)];
+    assert_eq!(sums(&scene), [mirrored, 0.0]);
+    scene.slices = vec![slice(-DVec3::X, 0.5, SliceMode::Hide)];
+    assert_eq!(sums(&scene), [0.0, direct]);
+    // Hidden veils before a lamp that is not hidden.
+    scene.slices = vec![slice(DVec3::Y, 0.6, SliceMode::Hide)];
+    for row in 0..20 {
+        let place = 0.3 * f64::from(row) - 3.0;
+        sphere(&mut scene, [place, 1.0, 1.0], 0.95, lambertian(0.5));
+    }
+    assert_eq!(sums(&scene)[1], direct);
 }
 
 #[test]

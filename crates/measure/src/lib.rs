@@ -22,4 +22,4 @@ pub mod report;
 pub mod stress;
 pub mod workload;
 
-pub use random_scene::random_scene;
+pub use random_scene::{random_scene, random_scene_of_all_bodies};

@@ -5,19 +5,19 @@ use glam::DVec3;
 use spherule_core::internals::random::Random;
 use std::fmt::{Display, Write};
 
-/// Returns a scene file, the same for a seed. Its spheres are opaque or of glass; it has no slices, nor pictures of skies.
+/// Returns a scene file, the same for a seed. It has spheres alone, opaque or of glass, and no slices.
 pub fn random_scene(seed: u64) -> String {
     let random = &mut Random::new(seed);
-    let scale = if random.coin() { 1.0 } else { random.decades([-4.0, 4.0]) };
-    let far = if random.index(4) == 0 { random.decades([0.0, 3.0]) } else { 0.0 };
-    let mut scene = RandomScene { text: String::new(), scale, offset: random.in_cube() * far };
-    scene.add_settings(random);
-    let materials = scene.add_materials(random);
-    scene.add_environment(random);
-    (0..random.index(4)).for_each(|_| scene.add_light(random));
-    scene.add_ground(random);
-    let spheres = scene.add_spheres(random, &materials);
-    scene.add_camera(random, &spheres);
+    RandomScene::of_spheres(random).0.text
+}
+
+/// Returns a scene file, the same for a seed, with bodies of all kinds, translucent ones among them, and slices, which cut no
+/// glass.
+pub fn random_scene_of_all_bodies(seed: u64) -> String {
+    let random = &mut Random::new(seed);
+    let (mut scene, spheres) = RandomScene::of_spheres(random);
+    scene.add_bodies(random, &spheres);
+    (0..random.index(3)).for_each(|_| scene.add_slice(random));
     scene.text
 }
 
@@ -45,6 +45,21 @@ const KINDS: [&str; 9] = [
 type Sphere = (DVec3, f64);
 
 impl RandomScene {
+    /// Returns a scene of spheres, and these.
+    fn of_spheres(random: &mut Random) -> (Self, Vec<Sphere>) {
+        let scale = if random.coin() { 1.0 } else { random.decades([-4.0, 4.0]) };
+        let far = if random.index(4) == 0 { random.decades([0.0, 3.0]) } else { 0.0 };
+        let mut scene = Self { text: String::new(), scale, offset: random.in_cube() * far };
+        scene.add_settings(random);
+        let materials = scene.add_materials(random);
+        scene.add_environment(random);
+        (0..random.index(4)).for_each(|_| scene.add_light(random));
+        scene.add_ground(random);
+        let spheres = scene.add_spheres(random, &materials);
+        scene.add_camera(random, &spheres);
+        (scene, spheres)
+    }
+
     fn line(&mut self, text: impl Display) {
         // A string takes all that is written.
         let _ = writeln!(self.text, "{text}");
@@ -233,6 +248,81 @@ impl RandomScene {
             }
         }
         spheres
+    }
+
+    /// Adds bodies of other kinds beside spheres, and translucent spheres: most often where the others are.
+    fn add_bodies(&mut self, random: &mut Random, spheres: &[Sphere]) {
+        const OPAQUE: [usize; 5] = [0, 2, 3, 6, 7];
+        let names: Vec<String> = (0..3).map(|row| format!("b{row}")).collect();
+        for name in &names {
+            self.line(format_args!("[material.{name}]"));
+            let kind = OPAQUE[random.index(OPAQUE.len())];
+            self.add_material(random, kind);
+            if random.coin() {
+                self.set_number("opacity", [0.0, 0.3, random.unit(), 1.0][random.index(4)]);
+            }
+        }
+        let only = (random.index(3) == 0).then(|| random.index(4));
+        let most = [4, 30][random.index(2)];
+        for _ in 0..random.index(most) {
+            let [first, second] = [0; 2].map(|_| spheres[random.index(spheres.len())]);
+            let kind = random.index(4);
+            self.add_body(random, only.unwrap_or(kind), [first, second]);
+            self.set_name("material", &names[random.index(names.len())]);
+        }
+    }
+
+    /// Adds a stick, an ellipsoid, a cone or a sphere, at or between two spheres.
+    fn add_body(&mut self, random: &mut Random, kind: usize, [first, second]: [Sphere; 2]) {
+        let place = if random.coin() { first.0 } else { random.in_cube() * 2.0 };
+        let size = first.1 * [1.0, 0.5, 1.0, random.decades([-1.0, 1.0])][random.index(4)];
+        match kind {
+            0 => {
+                self.line("[[stick]]");
+                self.set_point("from", place);
+                self.set_point("to", second.0);
+                self.set_length("radius", size);
+                if random.coin() {
+                    self.set("colors", format_args!("[{}, {}]", color(random), color(random)));
+                }
+            }
+            1 => {
+                let axes = [0; 3].map(|_| self.scale * size * random.decades([-0.5, 0.5]));
+                let [x, y, z] = random.direction().to_array();
+                self.line("[[ellipsoid]]");
+                self.set_point("center", place);
+                self.set("semi_axes", format_args!("{axes:?}"));
+                if random.coin() {
+                    self.set("orientation", format_args!("{:?}", [random.unit(), x, y, z]));
+                }
+            }
+            2 => {
+                let apex = place + 2.0 * size * random.direction();
+                self.line("[[cone]]");
+                self.set_point("apex", apex);
+                self.set_point("base", place);
+                self.set_length("radius", size);
+            }
+            _ => {
+                self.line("[[sphere]]");
+                self.set_point("center", place);
+                self.set_length("radius", size);
+            }
+        }
+    }
+
+    /// Adds a slice; caps must not cut glass.
+    fn add_slice(&mut self, random: &mut Random) {
+        let modes: &[&str] = if self.text.contains("dielectric") {
+            &["remove", "hide"]
+        } else {
+            &["remove", "hide", "caps", "caps"]
+        };
+        let normal = if random.coin() { DVec3::X } else { random.direction() };
+        self.line("[[slice]]");
+        self.set("normal", format_args!("{:?}", normal.to_array()));
+        self.set_length("distance", random.between([-1.0, 2.0]) + normal.dot(self.offset));
+        self.set_name("mode", one_of(random, modes));
     }
 
     fn add_camera(&mut self, random: &mut Random, spheres: &[Sphere]) {

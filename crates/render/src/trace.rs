@@ -14,6 +14,7 @@ use self::translucent::Choice;
 pub(crate) use self::translucent::Chosen;
 use crate::ray::{Hits, MISS, Rays};
 use crate::world::World;
+use std::borrow::Cow;
 
 /// A kind of ray query.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -104,12 +105,25 @@ fn trace_sliced(tracer: Tracer, query: Query, world: &World, rays: &Rays, hits: 
     if rays.own.first() != Some(&MISS) {
         return trace_clipped(tracer, query, world, Bodies::all(world), rays, hits);
     }
-    let bodies = Bodies::visible(world);
-    let exact = trace_clipped(tracer, query, world, bodies, rays, hits);
+    let (bodies, rays) = (Bodies::visible(world), toward_seen(world, rays));
+    let exact = trace_clipped(tracer, query, world, bodies, &rays, hits);
     for hit in &mut hits.sphere[..rays.len()] {
         *hit = bodies.hit_in(world, *hit);
     }
     exact
+}
+
+/// Returns rays of the camera whose targets are rows of the spheres that it sees, in place of those of the world.
+fn toward_seen<'a>(world: &World, rays: &'a Rays) -> Cow<'a, Rays> {
+    let targets = |rays: &Rays| rays.target[..rays.len()].iter().any(|&target| target != MISS);
+    let Some(visible) = world.camera_visible.as_ref().filter(|_| targets(rays)) else {
+        return Cow::Borrowed(rays);
+    };
+    let (mut rays, count) = (rays.clone(), rays.len());
+    for target in rays.target[..count].iter_mut().filter(|target| **target != MISS) {
+        *target = visible.row_of(*target).unwrap_or(MISS);
+    }
+    Cow::Owned(rays)
 }
 
 /// Traces the parts of rays that are kept.

@@ -173,6 +173,8 @@ pub(super) fn sample(job: &Job, work: &mut Workspace) {
     }
     sample_lights(job, work, |light| light.sphere != MISS);
     caustics::flush(job, work);
+    // Rays from spheres and those from the camera, which some bodies are hidden from, are not traced together.
+    shadow_queue::trace_shadow_rays(job, work);
     sample_lights(job, work, |light| light.sphere == MISS);
     shadow_queue::trace_shadow_rays(job, work);
 }

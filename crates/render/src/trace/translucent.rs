@@ -15,6 +15,7 @@ use crate::scene::Rgb;
 use crate::translucency::{self, AttenuatedRay, Fragment, OpticalDepth, SeenBody};
 use crate::world::World;
 use glam::Vec3;
+use std::borrow::Cow;
 
 /// The choice of the bodies at which rays end.
 pub(super) enum Choice<'a> {
@@ -58,6 +59,7 @@ pub(super) fn trace(
 ) -> u64 {
     let from_camera = rays.own.first() == Some(&MISS);
     let bodies = if from_camera { Bodies::visible(world) } else { Bodies::all(world) };
+    let rays = &*if from_camera { super::toward_seen(world, rays) } else { Cow::Borrowed(rays) };
     let threshold = |row| {
         OpticalDepth::threshold(f64::from(match &choice {
             Choice::Hashed | Choice::Transmittance(_) => hashed(rays, row),

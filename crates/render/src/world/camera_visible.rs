@@ -2,6 +2,7 @@
 
 use crate::bvh::builders::{Builder, build};
 use crate::bvh::{Bvh, NodeRow};
+use crate::ray::MISS;
 use crate::spheres::Spheres;
 
 /// The spheres that camera rays are tested against.
@@ -13,6 +14,8 @@ pub struct CameraVisible {
     pub bvh: Bvh,
     /// Rows of the spheres in the world.
     pub row: Vec<u32>,
+    /// Rows here of the world's spheres; [`MISS`] of those that are hidden.
+    of_world: Vec<u32>,
 }
 
 impl CameraVisible {
@@ -25,7 +28,7 @@ impl CameraVisible {
             spheres.push(all.center(row), all.radius(row), id);
         }
         let bvh = Bvh::from_rows(nodes, spheres.blocks().len())?;
-        Some(Self { spheres, bvh, row })
+        Some(Self { of_world: inverse(&row, all.len()), spheres, bvh, row })
     }
 
     /// Builds the tree of the spheres that are not hidden; `hidden` is in the order of the user's
@@ -45,7 +48,19 @@ impl CameraVisible {
         for &row in &rows {
             of_id[all.id[row] as usize] = row as u32;
         }
-        let row = spheres.id.iter().map(|&id| of_id[id as usize]).collect();
-        Some(Self { spheres, bvh, row })
+        let row: Vec<u32> = spheres.id.iter().map(|&id| of_id[id as usize]).collect();
+        Some(Self { of_world: inverse(&row, all.len()), spheres, bvh, row })
     }
+
+    /// Returns the row here of a row of the world's spheres; `None` if it is hidden.
+    pub(crate) fn row_of(&self, row: u32) -> Option<u32> {
+        self.of_world.get(row as usize).copied().filter(|&row| row != MISS)
+    }
+}
+
+/// Returns the places of numbers below `count` in a list of them; [`MISS`] for those that are not in it.
+fn inverse(numbers: &[u32], count: usize) -> Vec<u32> {
+    let mut places = vec![MISS; count];
+    numbers.iter().zip(0..).for_each(|(&number, place)| places[number as usize] = place);
+    places
 }

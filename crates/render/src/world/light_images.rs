@@ -96,6 +96,15 @@ impl LightImage {
 }
 
 impl SeenLight {
+    /// Returns the row of the sphere that camera rays hit on their way to it; `None` for a sun that is seen directly.
+    fn first_sphere(&self) -> Option<u32> {
+        match (self.sphere, self.source) {
+            (MISS, CausticSource::Sphere(row)) => Some(row),
+            (MISS, CausticSource::Sun(_)) => None,
+            (sphere, _) => Some(sphere),
+        }
+    }
+
     /// Returns the number of bounces between camera and light.
     pub(crate) fn bounces(&self) -> u32 {
         match (self.sphere, self.through) {
@@ -117,6 +126,10 @@ impl LightImages {
         }
         let mut images = direct_images(world);
         images.extend(mirrored_images(world));
+        if let Some(visible) = &world.camera_visible {
+            let is_seen = |row| visible.row_of(row).is_some();
+            images.retain(|image| image.light.first_sphere().is_none_or(is_seen));
+        }
         let grid = [camera.width, camera.height];
         let images = without_crowds(images, grid);
         let columns = camera.width.div_ceil(CELL);
