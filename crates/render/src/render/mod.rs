@@ -170,6 +170,9 @@ impl Statistics {
 /// The picture depends only on the world and the settings: it has the same bytes for any number of
 /// threads and any tracer; a time limit decides only the number of samples.
 ///
+/// A task of a parallel iterator that waits for a render may begin the iterator's next one on the same stack, which can overflow:
+/// to render many worlds at once, call this from threads of [`std::thread`].
+///
 /// # Errors
 /// Settings out of range, or for another picture size than that of the world's camera; a region that is
 /// not in the picture.
