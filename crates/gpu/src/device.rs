@@ -16,7 +16,7 @@ const PATH_BUFFERS: u32 = 23;
 /// What kernels of paths need beside: double precision, and its bits as integers.
 const FOR_PATHS: wgpu::Features = wgpu::Features::SHADER_F64.union(wgpu::Features::SHADER_INT64);
 
-/// What a device was asked for, until then.
+/// A point in the sequence of what a device was asked for.
 pub(crate) type Submitted = wgpu::SubmissionIndex;
 
 /// A clock.

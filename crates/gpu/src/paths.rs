@@ -50,7 +50,7 @@ struct JobPaths {
     offsets: wgpu::Buffer,
     /// Columns of paths that no batch uses now.
     columns: Mutex<Vec<Columns>>,
-    /// Whether all kernels are compiled.
+    /// Success once all kernels are compiled, or the reason why one is not.
     compiled: OnceLock<Result<(), DeviceError>>,
 }
 

@@ -42,9 +42,9 @@ struct Found<'a> {
     pixels: FoundPixels,
 }
 
-/// What a device has found of the pixels of a tile.
+/// Results of a device for the pixels of a tile.
 pub(super) struct FoundPixels {
-    /// What it has found of all pixels of a batch.
+    /// Results for all pixels of a batch.
     pub(super) all: Arc<DevicePixels>,
     /// The places of the tile's pixels among them.
     pub(super) own: Range<usize>,
