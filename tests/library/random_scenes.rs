@@ -88,47 +88,34 @@ fn means_do_not_depend_on_how_light_is_sampled() {
     }
 }
 
-const ALL: Elisions = Elisions::ALL;
-
-/// Options that change no byte.
-const OPTIONS: [Options; 12] = [
-    traced(Traversal::Brute, PacketWidth::Eight),
-    traced(Traversal::Single, PacketWidth::Eight),
-    traced(Traversal::Stream, PacketWidth::Eight),
-    traced(Traversal::Packet, PacketWidth::One),
-    traced(Traversal::Packet, PacketWidth::Sixteen),
-    eliding(Elisions { empty_tiles: false, ..ALL }),
-    eliding(Elisions { even_background: false, ..ALL }),
-    eliding(Elisions { lens: false, ..ALL }),
-    eliding(Elisions { lights: false, ..ALL }),
-    eliding(Elisions { plane: false, ..ALL }),
-    eliding(Elisions { glass: false, ..ALL }),
-    eliding(Elisions { nearest_occluder: false, ..ALL }),
-];
-
-const USUAL: Options = Options {
-    tracer: Tracer { traversal: Traversal::Auto, width: PacketWidth::Eight },
-    region: None,
-    progress: None,
-    cancel: None,
-    statistics: false,
-    features: false,
-    judge: None,
-    elisions: ALL,
-};
-
-const fn traced(traversal: Traversal, width: PacketWidth) -> Options<'static> {
-    Options { tracer: Tracer { traversal, width }, ..USUAL }
-}
-
-const fn eliding(elisions: Elisions) -> Options<'static> {
-    Options { elisions, ..USUAL }
+/// Returns options that change no byte.
+fn options() -> [Options<'static>; 12] {
+    let traced = |traversal, width| {
+        let tracer = Tracer { traversal, width };
+        Options { tracer, ..Options::default() }
+    };
+    let eliding = |elisions| Options { elisions, ..Options::default() };
+    let all = Elisions::ALL;
+    [
+        traced(Traversal::Brute, PacketWidth::Eight),
+        traced(Traversal::Single, PacketWidth::Eight),
+        traced(Traversal::Stream, PacketWidth::Eight),
+        traced(Traversal::Packet, PacketWidth::One),
+        traced(Traversal::Packet, PacketWidth::Sixteen),
+        eliding(Elisions { empty_tiles: false, ..all }),
+        eliding(Elisions { even_background: false, ..all }),
+        eliding(Elisions { lens: false, ..all }),
+        eliding(Elisions { lights: false, ..all }),
+        eliding(Elisions { plane: false, ..all }),
+        eliding(Elisions { glass: false, ..all }),
+        eliding(Elisions { nearest_occluder: false, ..all }),
+    ]
 }
 
 /// Bodies of all kinds, slices and translucent bodies among them.
 #[test]
 fn bytes_do_not_depend_on_how_images_are_rendered() {
-    let mut compared = 0;
+    let (usual, mut compared) = (Options::default(), 0);
     for seed in 0..100 {
         let text = random_scene_of_all_bodies(seed);
         let scene = Scene::parse(&text, "random", Path::new(".")).expect("a scene");
@@ -138,9 +125,9 @@ fn bytes_do_not_depend_on_how_images_are_rendered() {
         let settings = &scene.settings;
         let image =
             |options: &Options| render(&world, settings, options).expect("settings in range").image;
-        let whole = image(&USUAL);
+        let whole = image(&usual);
         assert!(whole.pixels.iter().flatten().all(|x| (0.0..f32::INFINITY).contains(x)), "{seed}");
-        for options in &OPTIONS {
+        for options in &options() {
             let what = (options.tracer, options.elisions);
             assert!(image(options) == whole, "scene {seed}: {what:?}");
         }
@@ -148,8 +135,8 @@ fn bytes_do_not_depend_on_how_images_are_rendered() {
             let region = Region { x: 0, y: 0, width: settings.width, height: settings.height };
             let part = ImagePart { samples, ..ImagePart::whole(region, settings.spp) };
             let mut part =
-                ResumableRender::begin_part(&world, settings, &USUAL, part).expect("a part");
-            part.run(&world, &USUAL);
+                ResumableRender::begin_part(&world, settings, &usual, part).expect("a part");
+            part.run(&world, &usual);
             part.film().clone()
         };
         let middle = settings.spp / 2;
@@ -159,7 +146,7 @@ fn bytes_do_not_depend_on_how_images_are_rendered() {
             assert!(film.resolve() == whole, "scene {seed}: parts");
         }
         let region = Region { x: 3, y: 2, width: 7, height: 5 };
-        let cut = image(&Options { region: Some(region), ..USUAL });
+        let cut = image(&Options { region: Some(region), ..usual });
         for (row, pixels) in cut.pixels.chunks(7).enumerate() {
             let first = (row + 2) * settings.width as usize + 3;
             assert_eq!(pixels, &whole.pixels[first..first + 7], "scene {seed}: a region");

@@ -48,6 +48,9 @@ pub(super) fn run<'a>(
     let queue = TileQueue::new(steps.filter(|(tile, _)| tile.view == View::Anything));
     // Threads would leave nothing of a small picture to the device.
     let first: Vec<Option<Taken>> = (0..IN_FLIGHT).map(|_| queue.take(FEWEST)).collect();
+    if first.iter().all(Option::is_none) {
+        return;
+    }
     std::thread::scope(|scope| {
         for first in first {
             scope.spawn(|| drive((job, device), (&queue, first), watch));
@@ -82,7 +85,7 @@ fn drive<'q, 'a>(
             own,
             left,
         });
-        taken.found(found);
+        taken.hand_over(found);
     }
 }
 

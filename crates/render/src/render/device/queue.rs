@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
-/// Tiles that a device has followed and no thread has added up, above which the device waits: 90 MiB of sums.
+/// Tiles that a device has followed and no thread has added up, above which the device waits: 88 MiB of sums.
 const BACKLOG: usize = 4096;
 
 /// Tiles, and the samples that they are to get.
@@ -222,7 +222,7 @@ impl Taken<'_, '_> {
     }
 
     /// Hands the tiles over to threads which add up what a device has found, one after another.
-    pub(super) fn found(mut self, found: impl Iterator<Item = FoundPixels>) {
+    pub(super) fn hand_over(mut self, found: impl Iterator<Item = FoundPixels>) {
         let (tiles, ends) = (std::mem::take(&mut self.tiles), std::mem::take(&mut self.ends));
         let all = tiles.into_iter().zip(ends).zip(found).map(|((tile, end), pixels)| {
             let pass = self.pass.clone();
