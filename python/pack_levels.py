@@ -1,6 +1,6 @@
-"""Packs the wheels of several processor levels into one, with the programs: see tools/wheel.
+"""Packs the extension modules of all processor levels and the programs into one wheel: see tools/wheel.
 
-The first wheel is the lowest level's: its extension module stays what it is, and those of the others go to
+The first module is the lowest level's, and becomes ``spherule/_spherule.abi3.so``; the others go to
 ``spherule/_levels/LEVEL``. The program goes where pip puts scripts, and its levels beside it, where it looks for them.
 The tag of the platform is that of the newest symbol that any of them needs of the C library. Equal inputs give equal
 bytes.
@@ -18,6 +18,7 @@ import zipfile
 from collections.abc import Iterable
 from pathlib import Path
 
+PACKAGE = Path(__file__).parent / "spherule"
 MODULE = "spherule/_spherule.abi3.so"
 
 
@@ -33,24 +34,24 @@ def platform_tag(tag: str, binaries: Iterable[bytes]) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("out", type=Path)
-    parser.add_argument("wheels", nargs="+", metavar="LEVEL=WHEEL")
+    parser.add_argument("modules", nargs="+", metavar="LEVEL=MODULE")
+    parser.add_argument("--metadata", type=Path, required=True, help="the folder .dist-info that maturin writes")
     parser.add_argument("--program", type=Path, required=True)
     parser.add_argument("--libexec", type=Path)
     parser.add_argument("--license", type=Path, action="append", default=[])
     options = parser.parse_args()
 
-    (_, first), *others = (item.split("=", 1) for item in options.wheels)
-    files: dict[str, tuple[bytes, bool]] = {}
-    with zipfile.ZipFile(first) as wheel:
-        for info in wheel.infolist():
-            # maturin's list of crates has a time and paths of this machine; THIRD-PARTY-LICENSES.txt lists them, too.
-            if not info.filename.endswith("/RECORD") and ".dist-info/sboms/" not in info.filename:
-                files[info.filename] = (wheel.read(info), info.filename.endswith(".so"))
-    folder = next(name.split("/")[0] for name in files if ".dist-info/" in name)
+    (_, first), *others = (item.split("=", 1) for item in options.modules)
+    files: dict[str, tuple[bytes, bool]] = {MODULE: (Path(first).read_bytes(), True)}
+    for path in PACKAGE.iterdir():
+        if path.suffix in (".py", ".pyi", ".typed"):
+            files[f"{PACKAGE.name}/{path.name}"] = (path.read_bytes(), False)
+    folder = options.metadata.name
     data = folder.replace(".dist-info", ".data")
-    for level, path in others:
-        with zipfile.ZipFile(path) as wheel:
-            files[MODULE.replace("/", f"/_levels/{level}/")] = (wheel.read(MODULE), True)
+    for path in options.metadata.iterdir():
+        files[f"{folder}/{path.name}"] = (path.read_bytes(), False)
+    for level, module in others:
+        files[MODULE.replace("/", f"/_levels/{level}/")] = (Path(module).read_bytes(), True)
     if others:
         for package in ("spherule/_levels", *(f"spherule/_levels/{level}" for level, _ in others)):
             files[f"{package}/__init__.py"] = (b"", False)
@@ -64,10 +65,14 @@ def main() -> None:
     for path in options.license:
         files[f"{folder}/licenses/{path.name}"] = (path.read_bytes(), False)
 
-    *distribution, built_for = Path(first).stem.split("-")
-    tag = platform_tag(built_for, (content for content, executable in files.values() if executable))
-    facts, _ = files[f"{folder}/WHEEL"]
-    files[f"{folder}/WHEEL"] = (facts.replace(f"-{built_for}\n".encode(), f"-{tag}\n".encode()), False)
+    facts = files[f"{folder}/WHEEL"][0].decode()
+    built_for = re.search(r"^Tag: \w+-\w+-(\S+)$", facts, re.MULTILINE)
+    if built_for is None:
+        parser.error(f"{options.metadata / 'WHEEL'} has no tag")
+    tag = built_for[0].replace(
+        built_for[1], platform_tag(built_for[1], (content for content, executable in files.values() if executable))
+    )
+    files[f"{folder}/WHEEL"] = (facts.replace(built_for[0], tag).encode(), False)
 
     record = []
     for name, (content, _) in sorted(files.items()):
@@ -79,7 +84,7 @@ def main() -> None:
     moment = time.gmtime(max(int(os.environ.get("SOURCE_DATE_EPOCH", "0")), 315_532_800))
     # The files that tell what it is come last, as the format asks for.
     order = sorted(files, key=lambda name: (".dist-info/" in name, name))
-    packed = options.out / f"{'-'.join([*distribution, tag])}.whl"
+    packed = options.out / f"{folder.removesuffix('.dist-info')}-{tag.removeprefix('Tag: ')}.whl"
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as wheel:
         for name in order:
             content, executable = files[name]
