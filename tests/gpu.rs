@@ -2,8 +2,11 @@
 
 #![cfg(feature = "gpu")]
 
-use assert_cmd::Command;
+#[path = "common/process.rs"]
+mod process;
+
 use std::path::Path;
+use std::process::Command;
 
 /// A variable of Vulkan's loader with the drivers; none of these exists.
 const NO_DRIVERS: (&str, &str) = ("VK_ICD_FILENAMES", "/nowhere");
@@ -11,8 +14,7 @@ const NO_DRIVERS: (&str, &str) = ("VK_ICD_FILENAMES", "/nowhere");
 /// Runs the program, and returns what it prints, and what it complains of.
 fn run(folder: &Path, args: &[&str], variable: Option<(&str, &str)>) -> (String, String) {
     let mut program = Command::new(env!("CARGO_BIN_EXE_spherule"));
-    let output = program.args(args).envs(variable).current_dir(folder).output();
-    let output = output.expect("a program that runs");
+    let output = process::run(program.args(args).envs(variable).current_dir(folder));
     let [printed, complaints] =
         [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
     assert!(output.status.success(), "{args:?}: {complaints}");

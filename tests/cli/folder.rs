@@ -1,10 +1,12 @@
 //! A temporary folder for a test.
 
-use assert_cmd::Command;
+#![allow(dead_code, reason = "each test crate uses its own part of this")]
+
+use crate::process::run;
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Output;
+use std::process::{Command, Output};
 use tempfile::TempDir;
 
 /// Arguments of a small image of plastic, metal and glass.
@@ -18,13 +20,29 @@ impl Folder {
         Self(tempfile::tempdir().expect("a temporary folder"))
     }
 
+    /// Returns a command for the program in the folder.
+    pub(crate) fn command(&self, args: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_spherule"));
+        command.args(args).current_dir(&self.0);
+        command
+    }
+
     /// Runs the program in the folder.
+    #[track_caller]
     pub(crate) fn run(&self, args: &[&str]) -> Output {
-        let mut program = Command::new(env!("CARGO_BIN_EXE_spherule"));
-        program.args(args).current_dir(&self.0).output().expect("a program that runs")
+        run(&mut self.command(args))
+    }
+
+    /// Runs a line of a shell in the folder; `$0` is the program, and `$@` are the arguments.
+    #[track_caller]
+    pub(crate) fn shell(&self, line: &str, args: &[&str]) -> Output {
+        let mut shell = Command::new("sh");
+        shell.args(["-c", line, env!("CARGO_BIN_EXE_spherule")]).args(args);
+        run(shell.current_dir(&self.0))
     }
 
     /// Runs the program, asserts success, and returns its output.
+    #[track_caller]
     pub(crate) fn succeed(&self, args: &[&str]) -> String {
         let output = self.run(args);
         assert!(output.status.success(), "{args:?}: {}", text(&output.stderr));

@@ -2,18 +2,19 @@
 
 use crate::figures::codes;
 use crate::folder::{Folder, SMALL, text};
+use crate::process::Process;
 use spherule_render::image::{Format, Image, compare, read_metadata};
 use std::fs::File;
-use std::process::{Command, Output, Stdio};
+use std::process::{Output, Stdio};
 
 const XYZ: &str = "2\nProperties=species:S:1:pos:R:3\nH 0 0 0\nO 0 1 0\n";
 
 /// Runs the program with a file as standard input.
 fn run_with_input(folder: &Folder, args: &[&str], input: &str) -> Output {
     let input = File::open(folder.path(input)).expect("a file");
-    let mut program = Command::new(env!("CARGO_BIN_EXE_spherule"));
-    program.args(args).current_dir(folder.root()).stdin(Stdio::from(input));
-    program.output().expect("a program that runs")
+    let mut command = folder.command(args);
+    command.stdin(Stdio::from(input)).stdout(Stdio::piped()).stderr(Stdio::piped());
+    Process::start(&mut command).end()
 }
 
 #[test]
@@ -123,10 +124,8 @@ fn standard_output_takes_a_picture_and_nothing_else() {
 #[test]
 fn a_full_standard_output_is_an_error() {
     let folder = Folder::new();
-    let full = File::options().write(true).open("/dev/full").expect("a device");
-    let mut program = Command::new(env!("CARGO_BIN_EXE_spherule"));
-    program.args([&SMALL[..], &["-o", "-"]].concat()).stdout(Stdio::from(full));
-    let output = program.current_dir(folder.root()).output().expect("a program that runs");
+    let output =
+        folder.shell("exec \"$0\" \"$@\" >/dev/full", &[&SMALL[..], &["-o", "-"]].concat());
     assert_eq!(output.status.code(), Some(1));
     assert!(text(&output.stderr).contains("standard output"), "{}", text(&output.stderr));
 }

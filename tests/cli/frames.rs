@@ -1,6 +1,7 @@
 //! Frames of a file on the command line.
 
 use crate::folder::{Folder, SMALL, text};
+use crate::process::run_with_input;
 use spherule_render::image::{Image, read_metadata};
 
 /// Particles, one of which moves one unit to the right in each frame, with an increasing column.
@@ -284,9 +285,8 @@ fn pipes_report_frames_outside_the_picture() {
     let input = trajectory(&frames);
     let run = |args: &str| {
         let line = format!("render - --radii 1 {args} {TINY} -o a.png");
-        let mut program = assert_cmd::Command::new(env!("CARGO_BIN_EXE_spherule"));
-        let program = program.args(line.split(' ')).current_dir(folder.root());
-        let output = program.write_stdin(input.clone()).output().expect("a program that runs");
+        let mut command = folder.command(&line.split(' ').collect::<Vec<_>>());
+        let output = run_with_input(&mut command, &input);
         (output.status.code(), text(&output.stderr))
     };
     let (code, output) = run("--frame all");

@@ -2,31 +2,21 @@
 #![cfg(unix)]
 
 use crate::folder::{Folder, text};
-use assert_cmd::Command;
+use crate::process::{run, run_with_input};
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::Write;
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::symlink;
-use std::process::Output;
-use std::time::Duration;
-
-/// Time limit of each case, on a busy machine.
-const TIME: Duration = Duration::from_secs(60);
+use std::process::{Command, Output};
 
 /// Maximum length of an error message in bytes.
 const LONGEST: usize = 4000;
 
-fn run<'a>(folder: &Folder, args: impl IntoIterator<Item = &'a OsStr>) -> Output {
-    let mut program = Command::new(env!("CARGO_BIN_EXE_spherule"));
-    program.args(args).current_dir(folder.root()).timeout(TIME);
-    program.output().expect("a program that runs")
-}
-
 /// Runs a command that must fail soon, with a message that contains `word`.
 #[track_caller]
 fn refuse(folder: &Folder, line: &str, word: &str) {
-    let output = run(folder, line.split(' ').map(OsStr::new));
+    let output = folder.run(&line.split(' ').collect::<Vec<_>>());
     let message = text(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{line}: {message}");
     assert!(message.contains(word) && !message.contains("panicked"), "{line}: {message}");
@@ -107,15 +97,12 @@ fn errors_about_long_lines_are_short() {
 fn run_with_pipe(line: &str, name: &str, content: &'static [u8]) -> Output {
     let folder = Folder::new();
     let path = folder.path(name);
-    let made = std::process::Command::new("mkfifo").arg(&path).status();
-    assert!(made.is_ok_and(|status| status.success()), "no pipe");
-    // Waits for a reader, which need not read everything.
-    let writer = std::thread::spawn(move || {
+    assert!(run(Command::new("mkfifo").arg(&path)).status.success(), "no pipe");
+    // Waits for a reader, which need not read everything. Without a reader it never ends, so nothing joins it.
+    std::thread::spawn(move || {
         let _ = File::create(path).and_then(|mut pipe| pipe.write_all(content));
     });
-    let output = run(&folder, line.split(' ').map(OsStr::new));
-    writer.join().expect("a writer that ends");
-    output
+    folder.run(&line.split(' ').collect::<Vec<_>>())
 }
 
 #[test]
@@ -171,14 +158,14 @@ fn file_names_need_not_be_utf8() {
     for input in [scene, rows] {
         let small = ["--size", "4x4", "--spp", "1", "--quiet", "-o"].map(OsStr::new);
         let args = [&[OsStr::new("render"), input][..], &small, &[picture]].concat();
-        let output = run(&folder, args);
+        let output = run(folder.command(&[]).args(args));
         assert!(output.status.success(), "{}", text(&output.stderr));
         assert!(folder.root().join(picture).exists());
-        let output = run(&folder, [OsStr::new("compare"), picture, picture]);
+        let output = run(folder.command(&["compare"]).args([picture, picture]));
         assert!(output.status.success(), "{}", text(&output.stderr));
     }
     fs::write(folder.root().join(rows), "x,y,z,r\n0,0,0,one\n").unwrap();
-    let output = run(&folder, [OsStr::new("info"), rows]);
+    let output = run(folder.command(&["info"]).arg(rows));
     assert_eq!(output.status.code(), Some(1));
     assert!(text(&output.stderr).contains("not a number"));
 }
@@ -186,9 +173,8 @@ fn file_names_need_not_be_utf8() {
 #[test]
 fn a_dash_is_standard_input() {
     let frames = "1\na\nC 0 0 0\n1\nb\nO 0 0 0\n";
-    let mut program = Command::new(env!("CARGO_BIN_EXE_spherule"));
-    program.args(["info", "-", "--frame", "last"]).write_stdin(frames).timeout(TIME);
-    let output = program.output().expect("a program that runs");
+    let folder = Folder::new();
+    let output = run_with_input(&mut folder.command(&["info", "-", "--frame", "last"]), frames);
     assert!(output.status.success(), "{}", text(&output.stderr));
     assert!(text(&output.stdout).contains("type         O (O): 1"), "{}", text(&output.stdout));
 }

@@ -20,6 +20,8 @@ mod particles;
 mod parts;
 mod pictures;
 mod prepared;
+#[path = "../common/process.rs"]
+mod process;
 mod processes;
 mod refusals;
 mod reports;

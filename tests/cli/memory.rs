@@ -171,16 +171,10 @@ fn limits_of_the_shell_are_obeyed_and_named() {
     let folder = Folder::new();
     folder.write("a.toml", "[camera]\nfit = true\n[[generate]]\nkind = \"field\"\ncount = 707\n");
     folder.write("a.txt", &rows("", |_, [x, y, z]| format!("{x} {y} {z} 0.3")));
-    let program = env!("CARGO_BIN_EXE_spherule");
     for (file, least) in [("a.toml", 40_u64), ("a.txt", 32)] {
         let limited = |option: &str, bytes: u64| {
-            let line = format!(
-                "ulimit -{option} {}; exec {program} render {file} --threads 2 {}",
-                bytes >> 10,
-                TINY.join(" ")
-            );
-            let mut shell = std::process::Command::new("sh");
-            shell.args(["-c", &line]).current_dir(folder.root()).output().expect("a shell")
+            let line = format!("ulimit -{option} {}; exec \"$0\" \"$@\"", bytes >> 10);
+            folder.shell(&line, &[&["render", file, "--threads", "2"], &TINY[..]].concat())
         };
         // Virtual memory includes that of the program itself.
         let named = [("v", 30 << 20, "virtual memory (ulimit -v)"), ("d", 0, "data (ulimit -d)")];

@@ -1,15 +1,8 @@
 //! Outputs: failing standard output, and files that would replace others.
 
 use crate::folder::{Folder, SMALL, text};
-use std::fs::{self, File};
-use std::process::{Command, Output, Stdio};
-
-/// Runs a shell command in the folder; `$0` is the program.
-fn shell(folder: &Folder, line: &str) -> Output {
-    let mut shell = Command::new("sh");
-    shell.args(["-c", line, env!("CARGO_BIN_EXE_spherule")]).current_dir(folder.root());
-    shell.output().expect("a shell that starts")
-}
+use std::fs;
+use std::process::Output;
 
 #[cfg(target_os = "linux")]
 #[test]
@@ -48,10 +41,7 @@ fn standard_output_that_cannot_be_written_is_an_error() {
         assert!(message.contains(reason), "{line:?}: {message}");
     };
     for line in lines {
-        let full = File::options().write(true).open("/dev/full").expect("a device");
-        let mut program = Command::new(env!("CARGO_BIN_EXE_spherule"));
-        program.args(line).current_dir(folder.root()).stdout(Stdio::from(full));
-        check(line, "No space left", &program.output().expect("a program that runs"));
+        check(line, "No space left", &folder.shell("exec \"$0\" \"$@\" >/dev/full", line));
         // The work itself is done.
         if let Some(name) = line.iter().skip_while(|word| **word != "-o").nth(1)
             && !line.contains(&"--part")
@@ -60,16 +50,13 @@ fn standard_output_that_cannot_be_written_is_an_error() {
         }
         let _ = fs::remove_file(folder.path("f.csv"));
     }
-    let lost = shell(&folder, "exec \"$0\" compare a.png missing.png 2>/dev/full");
+    let lost = folder.shell("exec \"$0\" compare a.png missing.png 2>/dev/full", &[]);
     assert_eq!(lost.status.code(), Some(1));
-    let lost = shell(
-        &folder,
-        "exec \"$0\" render --size 8x8 --spp 1 --lanes 4 --traversal scalar 2>/dev/full",
-    );
+    let tiny = ["render", "--size", "8x8", "--spp", "1", "--lanes", "4", "--traversal", "scalar"];
+    let lost = folder.shell("exec \"$0\" \"$@\" 2>/dev/full", &tiny);
     assert_eq!(lost.status.code(), Some(1));
     // Closed standard error suppresses messages.
-    let closed =
-        shell(&folder, "exec \"$0\" render --size 8x8 --spp 1 --traversal scalar --lanes 4 2>&-");
+    let closed = folder.shell("exec \"$0\" \"$@\" 2>&-", &tiny);
     assert_eq!(closed.status.code(), Some(0));
 }
 
@@ -164,7 +151,7 @@ fn outputs_replace_neither_inputs_nor_each_other() {
         ("bench build --quick --scenes table.toml -o .".to_owned(), ["--output", "build-x.csv"]),
     ];
     for (line, words) in lines {
-        let output = shell(&folder, &format!("exec \"$0\" {line}"));
+        let output = folder.shell(&format!("exec \"$0\" {line}"), &[]);
         let message = text(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{line}: {message}");
         for word in words {
@@ -215,7 +202,7 @@ fn replaceable_files_are_replaced() {
         "render --size 8x8 --spp 1 -q -o once.png --json > report.json",
     ];
     for line in lines {
-        let output = shell(&folder, &format!("exec \"$0\" {line}"));
+        let output = folder.shell(&format!("exec \"$0\" {line}"), &[]);
         assert!(output.status.success(), "{line}: {}", text(&output.stderr));
     }
 }

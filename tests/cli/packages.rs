@@ -1,8 +1,8 @@
 //! Contents of packages: manual pages, and the level of the program.
 
 use crate::folder::{Folder, text};
+use crate::process::run;
 use std::fs;
-use std::process::Command;
 
 #[test]
 fn every_command_has_a_manual_page() {
@@ -60,10 +60,8 @@ fn the_level_of_the_program_is_named() {
 fn advice_about_the_processor_is_for_who_did_not_choose() {
     let folder = Folder::new();
     let render = |options: &[&str], level: &str| {
-        let mut program = Command::new(env!("CARGO_BIN_EXE_spherule"));
-        program.args(["--size", "8x6", "--spp", "1"]).args(options);
-        program.current_dir(folder.root()).env("SPHERULE_LEVEL", level);
-        text(&program.output().expect("a program that runs").stderr)
+        let mut command = folder.command(&["--size", "8x6", "--spp", "1"]);
+        text(&run(command.args(options).env("SPHERULE_LEVEL", level)).stderr)
     };
     let details = folder.succeed(&["-Vv"]);
     let advice = "this program was compiled for ";

@@ -1,8 +1,9 @@
 //! Parts of renders, merged images, and errors.
 
 use crate::folder::{Folder, SMALL, text};
+use crate::process;
 use std::fs;
-use std::process::{Command, Output};
+use std::process::Output;
 
 /// Renders parts of the small image.
 fn render(folder: &Folder, args: &[&str], parts: &[&str]) {
@@ -100,16 +101,14 @@ fn parts_have_presets_and_colored_backgrounds() {
 fn the_environment_selects_parts() {
     let folder = Folder::new();
     let run = |task: &str, count: &str| {
-        Command::new(env!("CARGO_BIN_EXE_spherule"))
-            .args(SMALL)
+        let mut command = folder.command(&SMALL);
+        command
             .args(["-o", "a.png", "--part", "from-env"])
             .env("SLURM_ARRAY_TASK_ID", task)
             .env("SLURM_ARRAY_TASK_MIN", "0")
             .env("SLURM_ARRAY_TASK_MAX", "1")
-            .env("SLURM_ARRAY_TASK_COUNT", count)
-            .current_dir(folder.root())
-            .output()
-            .expect("a program that runs")
+            .env("SLURM_ARRAY_TASK_COUNT", count);
+        process::run(&mut command)
     };
     for task in ["0", "1"] {
         let output = run(task, "2");

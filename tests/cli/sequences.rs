@@ -1,11 +1,12 @@
 //! Sequences of images: frames, turntables, parts, existing images, videos.
 
 use crate::folder::{Folder, text};
+use crate::process::{run, run_with_input};
 use spherule_render::image::{Image, WriteOptions, read_metadata};
 use std::collections::BTreeMap;
 use std::fs;
 use std::os::unix::fs::{MetadataExt, PermissionsExt};
-use std::process::{Command, Output};
+use std::process::Output;
 
 /// Frames of three particles, the last of which moves between the others.
 fn trajectory(frames: usize) -> String {
@@ -60,12 +61,8 @@ fn frames_are_spread_over_the_pictures_of_a_turn() {
         assert!((1..all.len()).all(|i| !all[..i].contains(&all[i])));
     }
     let folder = folder(3);
-    let input = assert_cmd::Command::new(env!("CARGO_BIN_EXE_spherule"))
-        .args(["render", "-", "--frame", "all", "--turntable", "3"])
-        .write_stdin(trajectory(3))
-        .current_dir(folder.root())
-        .output()
-        .expect("a program that runs");
+    let mut command = folder.command(&["render", "-", "--frame", "all", "--turntable", "3"]);
+    let input = run_with_input(&mut command, &trajectory(3));
     assert!(stderr(&input, 2, "standard input").contains("--turntable"));
 }
 
@@ -190,9 +187,7 @@ fn film(folder: &Folder, script: Option<&str>, args: &str) -> Output {
         path.push(":/usr/bin:/bin");
     }
     let line = format!("render a.xyz --size 31x24 --spp 2 -q {args}");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_spherule"));
-    command.args(line.split(' ')).current_dir(folder.root()).env("PATH", path);
-    command.output().expect("a program that runs")
+    run(folder.command(&line.split(' ').collect::<Vec<_>>()).env("PATH", path))
 }
 
 /// Stores its input and its arguments.

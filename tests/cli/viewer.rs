@@ -1,6 +1,7 @@
 //! The viewer without a window: scripts of events, and saved files.
 
 use crate::folder::{Folder, text};
+use crate::process::{run, run_with_input};
 use spherule_render::image::Image;
 use spherule_render::scene::Scene;
 use std::path::{Path, PathBuf};
@@ -258,10 +259,8 @@ fn terminal_pictures_need_a_terminal() {
 #[test]
 fn without_a_display_the_message_says_what_to_do() {
     let folder = Folder::new();
-    let mut program = assert_cmd::Command::new(env!("CARGO_BIN_EXE_spherule"));
-    let program = program.arg("view").current_dir(folder.root());
-    let output = program.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").output();
-    let output = output.expect("a program that runs");
+    let mut command = folder.command(&["view"]);
+    let output = run(command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY"));
     assert_eq!(output.status.code(), Some(1));
     let message = text(&output.stderr);
     assert!(message.contains("--headless-script") && message.lines().count() == 1, "{message}");
@@ -334,10 +333,8 @@ fn the_viewer_opens_every_file_that_render_takes() {
 fn standard_input_is_read_once_with_all_its_columns() {
     let folder = Folder::new();
     folder.write("script.txt", "size 60x60\nkey right\nkey c\nkey C\nclick 17,43");
-    let mut program = assert_cmd::Command::new(env!("CARGO_BIN_EXE_spherule"));
     let args = ["view", "-", "--radii", "1", "--view", "z", "--headless-script", "script.txt"];
-    let program = program.args(args).current_dir(folder.root());
-    let output = program.write_stdin(SALT).output().expect("a program that runs");
+    let output = run_with_input(&mut folder.command(&args), SALT);
     assert!(output.status.success(), "{}", text(&output.stderr));
     assert_eq!(text(&output.stdout), "sphere 3: type K, at 0 0 3, radius 1, q = 1\n");
 }

@@ -1,18 +1,21 @@
 //! Renders that are killed repeatedly, at random times and while they write.
 
 use crate::folder::Folder;
-use crate::process::{names, samples, start};
+use crate::long::{names, samples, start};
+use crate::process::{Process, wait_for};
 use crate::seed;
 use spherule_render::image::Image;
 use spherule_render::sampling::mix;
 use std::fs;
 use std::os::unix::fs::MetadataExt;
-use std::process::Child;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 /// Minimum number of kills and seconds of the test, both of which must be reached.
 const KILLS: u32 = 200;
+
+/// Maximum number of kills until a render of about a second is complete.
+const MOST_KILLS: u32 = 1000;
 
 /// Maximum time until a kill that may precede all work, in milliseconds.
 const LIFE: u64 = 60;
@@ -67,11 +70,12 @@ fn kill_through(render: &[&str], chance: &mut Chance) -> u32 {
         let begun = ["--resume", KEPT, "--quiet", "--checkpoint-every=2ms", &threads];
         let fresh = ["--checkpoint", KEPT, "--checkpoint-every=2ms", &threads];
         let args = if kept { begun.to_vec() } else { [&straight[1..], &fresh].concat() };
-        let child = start(&folder, &[&["render"], &args[..]].concat());
-        if !kill(child, &folder, chance) {
+        let process = start(&folder, &[&["render"], &args[..]].concat());
+        if !kill(process, &folder, chance) {
             break;
         }
         kills += 1;
+        assert!(kills < MOST_KILLS, "{render:?} does not go on");
         if folder.path(KEPT).exists() {
             let now = samples(&folder.path(KEPT));
             assert!(now >= least, "{now} samples after {least}");
@@ -90,19 +94,19 @@ fn kill_through(render: &[&str], chance: &mut Chance) -> u32 {
 }
 
 /// Kills a program at some moment; returns false if it ended before.
-fn kill(mut child: Child, folder: &Folder, chance: &mut Chance) -> bool {
+fn kill(mut process: Process, folder: &Folder, chance: &mut Chance) -> bool {
     let mut moment = Moment::any(folder, chance);
-    while !moment.has_come(folder) {
-        if let Some(status) = child.try_wait().expect("a program") {
-            assert!(status.success(), "{status}");
-            return false;
-        }
-        // Polling less often leaves time to the program on a busy machine.
-        sleep(Duration::from_micros(200));
+    let mut status = None;
+    wait_for("a checkpoint or the end of the render", || {
+        status = process.status();
+        status.is_some() || moment.has_come(folder)
+    });
+    if let Some(status) = status {
+        assert!(status.success(), "{status}");
+        return false;
     }
     sleep(Duration::from_micros(chance.below(PAUSE)));
-    child.kill().expect("a program that can be killed");
-    !child.wait().expect("a program that ends").success()
+    !process.kill().success()
 }
 
 /// The moment at which a program is killed.

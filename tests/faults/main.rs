@@ -11,6 +11,8 @@ mod damage;
 #[path = "../cli/folder.rs"]
 mod folder;
 mod kills;
+mod long;
+#[path = "../common/process.rs"]
 mod process;
 mod resume;
 #[path = "../common/seed.rs"]

@@ -1,7 +1,7 @@
 //! Resuming without faults: what can resume, and errors.
 
 use crate::folder::{Folder, text};
-use crate::process::{end, signal, start, wait_for_change};
+use crate::long::{end, start, wait_for_change};
 use std::fs;
 
 /// A particle file with columns and a cell.
@@ -38,10 +38,10 @@ const LOOKS: [&str; 17] = [
 /// Starts a render with a checkpoint, and ends it by a signal.
 fn interrupt(folder: &Folder, args: &[&str]) {
     let keep = ["--quiet", "--checkpoint", "c", "--checkpoint-every", "1ms"];
-    let child = start(folder, &[args, &keep].concat());
+    let render = start(folder, &[args, &keep].concat());
     wait_for_change(&folder.path("c"));
-    signal(&child, &["TERM"]);
-    let (code, message) = end(child);
+    render.signal(&["TERM"]);
+    let (code, message) = end(render);
     assert_eq!(code, Some(143), "{message}");
 }
 
@@ -56,10 +56,8 @@ fn checkpoints_resume_from_any_folder_without_options() {
     assert!(folder.read("a.png") != expected);
     // From another folder, with the files of the first.
     fs::create_dir(folder.path("below")).expect("a folder");
-    let below = ["-c", "cd below && exec \"$0\" render --resume ../c --threads 1 --quiet"];
-    let mut shell = std::process::Command::new("sh");
-    shell.args(below).arg(env!("CARGO_BIN_EXE_spherule")).current_dir(folder.root());
-    assert!(shell.status().expect("a shell").success());
+    let below = "cd below && exec \"$0\" render --resume ../c --threads 1 --quiet";
+    assert!(folder.shell(below, &[]).status.success());
     assert!(folder.read("a.png") == expected);
     // With all files moved: those at the new place are used.
     let moved = Folder::new();

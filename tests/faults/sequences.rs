@@ -1,10 +1,11 @@
 //! Sequences of images that are interrupted or killed, and resumed.
 
 use crate::folder::Folder;
-use crate::process::{LONG, end, names, signal, start, wait_for, wait_for_change};
+use crate::long::{LONG, end, names, start, wait_for_change};
+use crate::process::{Process, wait_for};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 /// Frames of a moving particle.
 fn folder() -> Folder {
@@ -43,10 +44,10 @@ fn interrupted_pictures_are_not_written() {
         for (name, code) in [("INT", 130), ("TERM", 143), ("HUP", 129)] {
             let folder = folder();
             let args = [&LONG[..], &["a.xyz", "--checkpoint", "c"], sequence].concat();
-            let child = start(&folder, &args);
+            let render = start(&folder, &args);
             wait_for_change(&folder.path("c"));
-            signal(&child, &[name]);
-            let (found, message) = end(child);
+            render.signal(&[name]);
+            let (found, message) = end(render);
             assert_eq!(found, Some(code), "{message}");
             assert!(message.contains("is not written"), "{message}");
             assert_eq!(names(&folder), ["a.xyz", "c"]);
@@ -64,10 +65,10 @@ fn sequences_resume_to_the_same_bytes() {
         for name in ["TERM", "KILL"] {
             let folder = folder();
             let keep = ["--checkpoint", "c", "--checkpoint-every", "1ms"];
-            let child = start(&folder, &[sequence, &keep].concat());
+            let render = start(&folder, &[sequence, &keep].concat());
             wait_for("a picture", || !pictures(&folder).is_empty());
-            signal(&child, &[name]);
-            let (code, message) = end(child);
+            render.signal(&[name]);
+            let (code, message) = end(render);
             assert_eq!(code, if name == "TERM" { Some(143) } else { None }, "{message}");
             let before = pictures(&folder);
             assert!(before.len() < 4 && before.iter().all(|picture| expected.contains(picture)));
@@ -86,10 +87,10 @@ fn parts_of_sequences_resume() {
     straight.succeed(SEQUENCES[0]);
     let folder = folder();
     let part = ["--part", "2/2", "--checkpoint", "c", "--checkpoint-every", "1ms"];
-    let child = start(&folder, &[SEQUENCES[0], &part].concat());
+    let render = start(&folder, &[SEQUENCES[0], &part].concat());
     wait_for("a picture", || !pictures(&folder).is_empty());
-    signal(&child, &["TERM"]);
-    assert_eq!(end(child).0, Some(143));
+    render.signal(&["TERM"]);
+    assert_eq!(end(render).0, Some(143));
     folder.succeed(&["render", "--resume", "c", "-q"]);
     let all = pictures(&straight);
     assert!(pictures(&folder) == [all[1].clone(), all[3].clone()]);
@@ -124,19 +125,13 @@ fn interrupted_videos_leave_nothing() {
     let executable = fs::Permissions::from_mode(0o755);
     fs::set_permissions(folder.path("tools/ffmpeg"), executable).expect("a script");
     let path = format!("{}:/usr/bin:/bin", folder.path("tools").display());
-    let child = Command::new(env!("CARGO_BIN_EXE_spherule"))
-        .args(["render", "a.xyz", "--turntable", "100000", "--size", "32x24", "--spp", "1", "-q"])
-        .args(["-o", "f.mp4"])
-        .current_dir(folder.root())
-        .env("PATH", path)
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("a program that starts");
+    let args = ["render", "a.xyz", "--turntable", "100000", "--size", "32x24", "--spp", "1", "-q"];
+    let mut command = folder.command(&[&args[..], &["-o", "f.mp4"]].concat());
+    command.env("PATH", path).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
+    let render = Process::start(&mut command);
     wait_for("the encoder", || folder.path("started").exists());
-    signal(&child, &["TERM"]);
-    let (code, message) = end(child);
+    render.signal(&["TERM"]);
+    let (code, message) = end(render);
     assert_eq!(code, Some(143), "{message}");
     assert_eq!(names(&folder), ["a.xyz", "started", "tools"]);
 }

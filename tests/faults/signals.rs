@@ -1,18 +1,21 @@
 //! Signals, time limits, and locks of other processes.
 
 use crate::folder::{Folder, SMALL, text};
-use crate::process::{LONG, end, names, samples, shell, signal, start, wait_for, wait_for_change};
+use crate::long::{LONG, end, names, samples, start, wait_for_change};
+use crate::process::{Process, run, wait_for};
 use spherule_render::image::Image;
 use std::fs;
+use std::process::{Command, Stdio};
+use std::time::Duration;
 
 #[test]
 fn signals_leave_picture_and_checkpoint_and_set_the_exit_status() {
     for (name, code) in [("INT", 130), ("TERM", 143), ("HUP", 129)] {
         let folder = Folder::new();
-        let child = start(&folder, &[&LONG[..], &["--checkpoint", "c"]].concat());
+        let render = start(&folder, &[&LONG[..], &["--checkpoint", "c"]].concat());
         wait_for_change(&folder.path("c"));
-        signal(&child, &[name]);
-        let (found, message) = end(child);
+        render.signal(&[name]);
+        let (found, message) = end(render);
         assert_eq!(found, Some(code), "{name}: {message}");
         assert!(message.contains("interrupted"), "{message}");
         assert_eq!(names(&folder), ["c", "spherule.png"]);
@@ -27,11 +30,11 @@ fn a_second_signal_ends_at_once_and_files_are_intact() {
     let folder = Folder::new();
     folder.picture("spherule.png", &[]);
     let old = folder.read("spherule.png");
-    let child = start(&folder, &[&LONG[..], &["--checkpoint", "c"]].concat());
+    let render = start(&folder, &[&LONG[..], &["--checkpoint", "c"]].concat());
     wait_for_change(&folder.path("c"));
     // Two equal signals may be merged.
-    signal(&child, &["INT", "TERM"]);
-    let (code, message) = end(child);
+    render.signal(&["INT", "TERM"]);
+    let (code, message) = end(render);
     assert!([Some(143), Some(130)].contains(&code), "{message}");
     samples(&folder.path("c"));
     let whole = || Image::read(folder.path("spherule.png")).is_ok();
@@ -56,7 +59,7 @@ fn time_limits_end_renders_and_more_time_resumes_them() {
 #[test]
 fn one_process_at_a_time_writes_a_checkpoint() {
     let folder = Folder::new();
-    let mut child = start(&folder, &[&LONG[..], &["--checkpoint", "c"]].concat());
+    let mut render = start(&folder, &[&LONG[..], &["--checkpoint", "c"]].concat());
     wait_for_change(&folder.path("c"));
     let others: [&[&str]; 2] =
         [&["render", "--resume", "c", "-o", "b.png"], &["render", "--checkpoint", "c"]];
@@ -65,13 +68,12 @@ fn one_process_at_a_time_writes_a_checkpoint() {
         assert_eq!(output.status.code(), Some(1));
         assert!(text(&output.stderr).contains("another process"), "{}", text(&output.stderr));
     }
-    assert!(child.try_wait().expect("a program").is_none() && !folder.path("b.png").exists());
-    child.kill().expect("a program");
-    child.wait().expect("a program");
+    assert!(render.status().is_none() && !folder.path("b.png").exists());
+    render.kill();
     // The system releases the locks of killed processes.
     let again = start(&folder, &["render", "--resume", "c", "--quiet"]);
     wait_for_change(&folder.path("c"));
-    signal(&again, &["TERM"]);
+    again.signal(&["TERM"]);
     assert_eq!(end(again).0, Some(143));
 }
 
@@ -82,7 +84,7 @@ fn full_disks_leave_the_old_files() {
     let keep = ["--checkpoint", "c", "--checkpoint-every", "none"];
     // Files are limited to 4 KiB: less than a checkpoint, more than the image.
     let args = [&SMALL[..], &keep, &["-o", "a.png"]].concat();
-    let output = shell(&folder, "ulimit -f 8", &args);
+    let output = folder.shell("ulimit -f 8; exec \"$0\" \"$@\"", &args);
     let message = text(&output.stderr);
     assert!(output.status.success(), "{message}");
     assert!(
@@ -94,7 +96,7 @@ fn full_disks_leave_the_old_files() {
     folder.succeed(&[&SMALL[..], &["--checkpoint", "c"]].concat());
     let kept = folder.read("c");
     let more = ["render", "--resume", "c", "--spp", "64", "-o", "a.pfm"];
-    let output = shell(&folder, "ulimit -f 8", &more);
+    let output = folder.shell("ulimit -f 8; exec \"$0\" \"$@\"", &more);
     let message = text(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{message}");
     assert!(message.contains("the last one remains"), "{message}");
@@ -107,12 +109,12 @@ fn full_disks_leave_the_old_files() {
 fn folders_that_vanish_do_not_stop_a_render() {
     let folder = Folder::new();
     fs::create_dir(folder.path("kept")).expect("a folder");
-    let child = start(&folder, &[&LONG[..], &["--checkpoint", "kept/c"]].concat());
+    let render = start(&folder, &[&LONG[..], &["--checkpoint", "kept/c"]].concat());
     wait_for_change(&folder.path("kept/c"));
     fs::rename(folder.path("kept"), folder.path("elsewhere")).expect("a folder");
-    std::thread::sleep(std::time::Duration::from_millis(200));
-    signal(&child, &["TERM"]);
-    let (code, message) = end(child);
+    std::thread::sleep(Duration::from_millis(200));
+    render.signal(&["TERM"]);
+    let (code, message) = end(render);
     assert_eq!(code, Some(143), "{message}");
     assert!(message.contains("not found") && message.contains("continues"), "{message}");
     assert!(Image::read(folder.path("spherule.png")).is_ok());
@@ -132,19 +134,6 @@ fn unusable_checkpoint_paths_are_refused_before_the_render() {
     assert_eq!(folder.read("other"), b"something else");
 }
 
-/// Starts the program with open standard input, and a named pipe.
-fn start_with_pipes(folder: &Folder, args: &[&str], input: &[u8]) -> std::process::Child {
-    use std::io::Write;
-    use std::process::{Command, Stdio};
-    let mut program = Command::new(env!("CARGO_BIN_EXE_spherule"));
-    program.args(args).current_dir(folder.root());
-    program.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
-    let mut child = program.spawn().expect("a program that starts");
-    // Closed by waiting for the child.
-    child.stdin.as_mut().expect("a pipe").write_all(input).expect("a reader");
-    child
-}
-
 #[test]
 fn one_signal_ends_programs_that_wait_for_a_pipe() {
     // Frames are longer than the bytes that are read to detect the format.
@@ -153,36 +142,24 @@ fn one_signal_ends_programs_that_wait_for_a_pipe() {
     let xyz = frame.repeat(4);
     for (name, code) in [("INT", 130), ("TERM", 143), ("HUP", 129)] {
         let folder = Folder::new();
-        let made = std::process::Command::new("mkfifo").arg(folder.path("p.png")).status();
-        assert!(made.is_ok_and(|status| status.success()));
+        assert!(run(Command::new("mkfifo").arg(folder.path("p.png"))).status.success());
         let kept = ["--checkpoint", "c", "--checkpoint-every", "none"];
         let writer = [&SMALL[..], &kept, &["-o", "p.png"]].concat();
         let reader = [&SMALL[..], &["-", "--frame", "all", "-o", "a.png"]].concat();
         for (args, last) in [(&writer, "c"), (&reader, "a-0000.png")] {
-            let child =
-                start_with_pipes(&folder, args, if last == "c" { b"" } else { xyz.as_bytes() });
+            let mut command = folder.command(args);
+            command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null());
+            let mut render = Process::start(&mut command);
+            // Standard input stays open.
+            render.write(if last == "c" { "" } else { &xyz });
             wait_for("the last file before the wait", || folder.path(last).exists());
-            std::thread::sleep(std::time::Duration::from_millis(200));
-            signal(&child, &[name]);
-            let ended = end_in_time(child);
-            assert_eq!(ended, Some(code), "{args:?} {name}");
+            std::thread::sleep(Duration::from_millis(200));
+            render.signal(&[name]);
+            assert_eq!(render.wait().code(), Some(code), "{args:?} {name}");
         }
         let rest = names(&folder).into_iter().filter(|name| !name.starts_with("a-"));
         assert_eq!(rest.collect::<Vec<_>>(), ["c", "p.png"]);
     }
-}
-
-/// Returns the exit code of a program that ends soon; `None` if it has to be killed.
-fn end_in_time(mut child: std::process::Child) -> Option<i32> {
-    for _ in 0..200 {
-        if let Some(status) = child.try_wait().expect("a program") {
-            return status.code();
-        }
-        std::thread::sleep(std::time::Duration::from_millis(50));
-    }
-    child.kill().expect("a program");
-    child.wait().expect("a program");
-    None
 }
 
 #[test]
@@ -192,7 +169,7 @@ fn few_file_descriptors_leave_a_whole_picture_and_nothing_else() {
     let mut written = 0;
     for limit in 3..=12 {
         let new = ["render", "--size", "16x12", "--spp", "1", "--quiet", "-o", "a.png"];
-        let output = shell(&folder, &format!("ulimit -n {limit}"), &new);
+        let output = folder.shell(&format!("ulimit -n {limit}; exec \"$0\" \"$@\""), &new);
         let message = text(&output.stderr);
         assert!(!message.contains("panicked"), "{limit}: {message}");
         assert_eq!(names(&folder), ["a.png"], "{limit}: {message}");

@@ -1,6 +1,10 @@
 //! The launcher beside shell scripts in place of programs.
 #![cfg(unix)]
 
+#[path = "../../../tests/common/process.rs"]
+mod process;
+
+use process::{Process, run};
 use spherule_levels::Level;
 use std::ffi::OsStr;
 use std::fs;
@@ -8,7 +12,7 @@ use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::{PermissionsExt, symlink};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use tempfile::TempDir;
 
 /// A package with the launcher and scripts for these levels, in a folder with a space in its name.
@@ -46,23 +50,6 @@ impl Package {
     }
 }
 
-/// Runs a command to its end.
-fn run(command: &mut Command) -> Output {
-    start(command).wait_with_output().expect("the launcher ends")
-}
-
-/// Starts a command, again while the system still writes the program that was copied (ETXTBSY): another
-/// test's child may hold the file for a moment.
-fn start(command: &mut Command) -> Child {
-    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    loop {
-        match command.spawn() {
-            Err(error) if error.kind() == std::io::ErrorKind::ExecutableFileBusy => {}
-            child => return child.expect("the launcher starts"),
-        }
-    }
-}
-
 fn best() -> Level {
     Level::of_processor()
 }
@@ -93,9 +80,9 @@ fn links_lead_to_the_package() {
 #[test]
 fn the_process_becomes_the_programs() {
     let package = Package::new(Level::PACKAGED, "echo $$; exit 37");
-    let child = start(&mut package.command());
-    let id = child.id();
-    let output = child.wait_with_output().expect("it ends");
+    let launcher = Process::start(package.command().stdout(Stdio::piped()));
+    let id = launcher.id();
+    let output = launcher.end();
     assert_eq!(output.status.code(), Some(37));
     assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), id.to_string());
     let package = Package::new(Level::PACKAGED, "kill -TERM $$");
