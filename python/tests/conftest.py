@@ -1,9 +1,16 @@
 import os
 import shutil
+import signal
 from pathlib import Path
 
 import numpy as np
 import pytest
+
+# Processes inherit the signals that their parent ignores, as background jobs of shells and what `nohup` starts do, but
+# have the default action for those that it catches.
+for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    if signal.getsignal(number) == signal.SIG_IGN:
+        signal.signal(number, lambda *_: None)
 
 
 @pytest.fixture

@@ -234,7 +234,8 @@ def test_other_things_are_refused():
 
 def same_as_the_program(program, path, tmp_path, options, arguments):
     out = tmp_path / "theirs.pfm"
-    subprocess.run([program, "render", path, "-o", out, "--size", "60x40", "--spp", "2", *arguments], check=True)
+    command = [program, "render", path, "-o", out, "--size", "60x40", "--spp", "2", *arguments]
+    subprocess.run(command, check=True, timeout=120)
     mine = tmp_path / "mine.pfm"
     spherule.render(path, size=(60, 40), spp=2, **options).save(mine)
     assert mine.read_bytes() == out.read_bytes()

@@ -16,7 +16,7 @@ SMALL = {"size": (60, 40), "spp": 2}
 
 def of_program(program, folder, source, *options):
     out = folder / "program.pfm"
-    subprocess.run([program, "render", source, "-o", out, "--quiet", *options], check=True, cwd=folder)
+    subprocess.run([program, "render", source, "-o", out, "--quiet", *options], check=True, cwd=folder, timeout=120)
     return out.read_bytes()
 
 
@@ -230,7 +230,8 @@ def test_other_threads_run_meanwhile(cloud):
             count += 1
             time.sleep(0.001)
 
-    thread = threading.Thread(target=spin)
+    # No interpreter waits for it if the render fails.
+    thread = threading.Thread(target=spin, daemon=True)
     thread.start()
     spherule.render(cloud, radius=0.05, size=(300, 200), time=0.5)
     done.set()
