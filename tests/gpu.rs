@@ -2,60 +2,72 @@
 
 #![cfg(feature = "gpu")]
 
+#[path = "cli/folder.rs"]
+mod folder;
 #[path = "common/process.rs"]
 mod process;
 
-use std::path::Path;
+use folder::{Folder, text};
 use std::process::Command;
 
 /// A variable of Vulkan's loader with the drivers; none of these exists.
+#[cfg(target_os = "linux")]
 const NO_DRIVERS: (&str, &str) = ("VK_ICD_FILENAMES", "/nowhere");
 
-/// Runs the program, and returns what it prints, and what it complains of.
-fn run(folder: &Path, args: &[&str], variable: Option<(&str, &str)>) -> (String, String) {
-    let mut program = Command::new(env!("CARGO_BIN_EXE_spherule"));
-    let output = process::run(program.args(args).envs(variable).current_dir(folder));
-    let [printed, complaints] =
-        [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
-    assert!(output.status.success(), "{args:?}: {complaints}");
-    (printed, complaints)
+/// Runs a command, asserts success, and returns what it writes to standard output and to standard error.
+#[track_caller]
+fn run(command: &mut Command) -> (String, String) {
+    let output = process::run(command);
+    let (printed, notes) = (text(&output.stdout), text(&output.stderr));
+    assert!(output.status.success(), "{command:?}: {notes}");
+    (printed, notes)
 }
 
-/// Renders a small image on a device, and returns its bytes, and the complaints.
-fn image(folder: &Path, device: &str, variable: Option<(&str, &str)>) -> (Vec<u8>, String) {
-    let occlusion = ["render", "--size", "64x36", "--spp", "4", "--quiet", "--integrator", "ao"];
-    let args = [&occlusion[..], &["--device", device, "-o", "a.pfm"]].concat();
-    let (_, complaints) = run(folder, &args, variable);
-    (std::fs::read(folder.join("a.pfm")).expect("an image"), complaints)
+/// Returns a command that renders a small image, `a.pfm`, on a device.
+fn render(folder: &Folder, device: &str) -> Command {
+    folder.command(&["render", "--size", "64x36", "--spp", "4", "--device", device, "-o", "a.pfm"])
 }
 
 #[test]
-fn images_are_the_processors_with_and_without_a_device() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let refusal = "--device gpu has no effect";
-    let (own, _) = image(folder.path(), "cpu", None);
-    let (other, complaints) = image(folder.path(), "gpu", None);
-    assert!(own == other);
-    if std::env::var_os("SPHERULE_GPU_TESTS").is_some() {
-        assert!(!complaints.contains(refusal), "{complaints}");
-    }
-    let (without, complaints) = image(folder.path(), "gpu", Some(NO_DRIVERS));
-    assert!(own == without);
-    if cfg!(target_os = "linux") {
-        assert!(complaints.contains(refusal), "{complaints}");
-    }
+#[cfg(target_os = "linux")]
+fn images_without_drivers_are_the_processors() {
+    let folder = Folder::new();
+    run(&mut render(&folder, "cpu"));
+    let own = folder.read("a.pfm");
+    let (_, notes) = run(render(&folder, "gpu").arg("--quiet").envs([NO_DRIVERS]));
+    assert!(notes.contains("--device gpu has no effect"), "{notes}");
+    assert!(notes.contains("no GPU was found"), "{notes}");
+    assert!(folder.read("a.pfm") == own);
 }
 
 #[test]
+#[cfg(target_os = "linux")]
+fn no_devices_are_listed_without_drivers() {
+    let folder = Folder::new();
+    let (printed, _) = run(folder.command(&["info", "--devices", "--json"]).envs([NO_DRIVERS]));
+    assert_eq!(printed.trim(), "[]");
+    let (printed, notes) = run(folder.command(&["info", "--devices"]).envs([NO_DRIVERS]));
+    assert!(printed.is_empty() && notes.contains("no GPU was found"), "{printed} {notes}");
+}
+
+#[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
+fn images_of_a_device_are_the_processors() {
+    let folder = Folder::new();
+    run(&mut render(&folder, "cpu"));
+    let own = folder.read("a.pfm");
+    let (_, notes) = run(render(&folder, "gpu").arg("--quiet"));
+    assert!(!notes.contains("--device gpu has no effect"), "{notes}");
+    assert!(folder.read("a.pfm") == own);
+}
+
+#[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn what_the_device_does_is_told() {
-    if std::env::var_os("SPHERULE_GPU_TESTS").is_none() {
-        return;
-    }
-    let folder = tempfile::tempdir().expect("a temporary folder");
+    let folder = Folder::new();
     let render = |device: &str, more: &[&str]| {
-        let args = ["render", "--size", "64x36", "--spp", "4", "--device", device, "-o", "a.pfm"];
-        let (printed, notes) = run(folder.path(), &[&args, more].concat(), None);
-        (std::fs::read(folder.path().join("a.pfm")).expect("an image"), printed, notes)
+        let (printed, notes) = run(render(&folder, device).args(more));
+        (folder.read("a.pfm"), printed, notes)
     };
     let occlusion = ["--integrator", "ao", "--json", "--quiet"];
     let (own, ..) = render("cpu", &occlusion);
@@ -82,24 +94,22 @@ fn what_the_device_does_is_told() {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn devices_are_listed() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let (printed, _) = run(folder.path(), &["info", "--devices", "--json"], None);
+    let folder = Folder::new();
+    let (printed, _) = run(&mut folder.command(&["info", "--devices", "--json"]));
     let listed: serde_json::Value = serde_json::from_str(&printed).expect("JSON");
-    let count = listed.as_array().map_or(0, Vec::len);
-    assert!(count > 0 || std::env::var_os("SPHERULE_GPU_TESTS").is_none(), "{printed}");
+    assert!(listed.as_array().is_some_and(|devices| !devices.is_empty()), "{printed}");
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn the_device_is_measured_beside_the_processor() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    if std::env::var_os("SPHERULE_GPU_TESTS").is_none() {
-        return;
-    }
+    let folder = Folder::new();
     let args = ["bench", "gpu", "--quick", "--rounds", "1", "-o", "out"];
-    let (printed, _) = run(folder.path(), &args, None);
+    let (printed, _) = run(&mut folder.command(&args));
     assert!(printed.contains("Adapter: ") && printed.contains("unknown"), "{printed}");
-    let read = |name: &str| std::fs::read(folder.path().join("out").join(name)).expect(name);
+    let read = |name: &str| folder.read(&format!("out/{name}"));
     let report: serde_json::Value = serde_json::from_slice(&read("gpu.json")).expect("JSON");
     let rows = |table: usize| report["tables"][table]["rows"].as_array().expect("rows").clone();
     // Classes of rays; one set of spheres; three images with two numbers of samples.

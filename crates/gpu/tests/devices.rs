@@ -5,13 +5,12 @@
 use spherule_gpu::{Adapters, Fma, Subnormals};
 
 #[test]
+#[ignore = "needs Vulkan in software"]
 fn the_software_adapter_is_listed_and_its_arithmetic_is_known() {
     let adapters = Adapters::find();
     let summaries = adapters.summaries();
-    let Some(place) = summaries.iter().position(|summary| summary.name.contains("llvmpipe")) else {
-        assert!(std::env::var_os("SPHERULE_GPU_TESTS").is_none(), "{summaries:?}");
-        return;
-    };
+    let place = summaries.iter().position(|summary| summary.name.contains("llvmpipe"));
+    let place = place.unwrap_or_else(|| panic!("{summaries:?}"));
     let summary = &summaries[place];
     assert!(summary.is_software() && summary.max_binding >= 1 << 27, "{summary:?}");
     assert_eq!(summary.backend, "vulkan");

@@ -17,10 +17,10 @@ use spherule_measure::stress::{REGIMES, sample};
 use spherule_measure::workload::{Class, SphereScene, Views};
 use std::sync::{Arc, OnceLock};
 
-/// The device of all tests; `None`, which the environment may forbid, if there is none.
-fn device() -> Option<&'static Arc<Device>> {
-    static DEVICE: OnceLock<Option<Arc<Device>>> = OnceLock::new();
-    DEVICE.get_or_init(common::device).as_ref()
+/// The device of all tests.
+fn device() -> &'static Arc<Device> {
+    static DEVICE: OnceLock<Arc<Device>> = OnceLock::new();
+    DEVICE.get_or_init(common::device)
 }
 
 /// Rays in columns.
@@ -65,8 +65,9 @@ fn compare(device: &Arc<Device>, spheres: &[[f32; 4]], rays: &[Ray], bounds: &[f
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn hits_are_the_processors_on_all_stress_regimes() {
-    let Some(device) = device() else { return };
+    let device = device();
     for (number, regime) in REGIMES.iter().enumerate() {
         let mut random = Random::new(number as u64);
         let mut all = Answered::default();
@@ -151,23 +152,25 @@ fn compare_workload(device: &Arc<Device>, scene: SphereScene, side: u32, cut: Op
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn hits_are_the_processors_on_the_workloads() {
-    let Some(device) = device() else { return };
+    let device = device();
     for scene in SphereScene::ALL.iter().filter(|scene| scene.count <= 1_000_188) {
         compare_workload(device, *scene, 96, None);
     }
 }
 
 #[test]
-#[ignore = "takes gigabytes and minutes"]
+#[ignore = "needs a GPU, gigabytes and minutes"]
 fn hits_are_the_processors_on_ten_million_spheres() {
-    let Some(device) = device() else { return };
+    let device = device();
     compare_workload(device, SphereScene::VOLUME10M, 128, None);
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn columns_are_cut_where_they_do_not_fit_and_what_does_not_fit_at_all_is_refused() {
-    let Some(device) = device() else { return };
+    let device = device();
     // 10 000 spheres of 16 bytes in columns of 4096, and rays in many batches.
     compare_workload(device, SphereScene::VOLUME10K, 48, Some(1 << 16));
     let (spheres, bvh) = build_tree(SphereScene::VOLUME10K.spheres().unwrap());
@@ -199,8 +202,9 @@ fn crowd(random: &mut Random) -> Spheres {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn rays_from_surfaces_and_toward_lights_hit_what_they_hit_on_the_processor() {
-    let Some(device) = device() else { return };
+    let device = device();
     let mut random = Random::new(8);
     let (mut all, mut answers) = (Answered::default(), [0; 2]);
     for _ in 0..6 {
@@ -242,8 +246,9 @@ fn rays_from_surfaces_and_toward_lights_hit_what_they_hit_on_the_processor() {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn rays_out_of_range_are_unknown_and_trees_without_spheres_are_missed() {
-    let Some(device) = device() else { return };
+    let device = device();
     let spheres = Spheres::from_columns(&[0.5], &[0.0], &[0.0], &[0.25]);
     let (spheres, bvh) = build_tree(spheres);
     let tree = Tree { bvh: &bvh, spheres: &spheres };

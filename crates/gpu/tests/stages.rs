@@ -32,7 +32,7 @@ fn compare(
     finish: impl Fn(&Job, &mut Workspace),
     check: impl Fn(&Job, &FirstStages, &mut Workspace),
 ) {
-    let Some(device) = device() else { return };
+    let device = device();
     for (name, filter) in [
         ("weekend.toml", Filter::Gaussian),
         ("paper-grid-20.toml", Filter::Box),
@@ -82,6 +82,7 @@ fn row(rays: &Rays, row: usize) -> [u32; 8] {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn generated_samples_and_rays_are_the_processors() {
     let change = |scene: &mut Scene| {
         scene.camera.lens = Some(Lens { aperture: 0.25, focus: Some(7.0) });
@@ -108,6 +109,7 @@ fn generated_samples_and_rays_are_the_processors() {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn hits_and_shadow_rays_are_the_processors() {
     let hits = |job: &Job, work: &mut Workspace| stages::intersect(job, work);
     compare(

@@ -88,8 +88,9 @@ fn compare(name: &str, scene: &Scene, device: &Arc<Device>) -> Answered {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn ambient_occlusion_of_all_scenes_is_the_processors() {
-    let Some(device) = device() else { return };
+    let device = device();
     let mut all = Answered::default();
     for path in files() {
         let mut scene = load(&path);
@@ -116,8 +117,9 @@ fn diffuse(scene: &mut Scene) {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn paths_among_diffuse_surfaces_are_the_processors() {
-    let Some(device) = device() else { return };
+    let device = device();
     let mut all = Answered::default();
     for path in files() {
         let mut scene = load(&path);
@@ -177,16 +179,18 @@ fn compare_material(name: &str, material: &Material, suns: &[f64], device: &Arc<
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn each_material_under_sky_and_sun_is_the_processors() {
-    let Some(device) = device() else { return };
+    let device = device();
     for (name, material) in opaque_materials() {
         compare_material(name, &material, &[0.0, 3.0, 30.0], &device);
     }
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn light_that_coats_mirror_is_the_processors() {
-    let Some(device) = device() else { return };
+    let device = device();
     for name in ["plastic", "reflective", "lambertian"] {
         let all = opaque_materials();
         let (_, material) = all.iter().find(|row| row.0 == name).unwrap();
@@ -207,8 +211,9 @@ fn light_that_coats_mirror_is_the_processors() {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn mixed_materials_in_all_scenes_are_the_processors() {
-    let Some(device) = device() else { return };
+    let device = device();
     let materials: Vec<Material> =
         opaque_materials().into_iter().map(|(_, material)| material).collect();
     for path in files() {
@@ -259,8 +264,9 @@ fn rough_materials() -> Vec<Material> {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn lights_of_every_kind_are_the_processors() {
-    let Some(device) = device() else { return };
+    let device = device();
     let all: Vec<Material> = opaque_materials().into_iter().map(|(_, material)| material).collect();
     for choice in [LightChoice::Tree, LightChoice::Power, LightChoice::Uniform] {
         for (name, materials) in [("rough", &rough_materials()), ("all", &all)] {
@@ -284,8 +290,9 @@ fn lights_of_every_kind_are_the_processors() {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn one_emitter_and_hundreds_are_the_processors() {
-    let Some(device) = device() else { return };
+    let device = device();
     for (name, every) in
         [("paper-two-spheres.toml", 2), ("paper-grid-500.toml", 3), ("sphereflake.toml", 2)]
     {
@@ -306,8 +313,9 @@ fn one_emitter_and_hundreds_are_the_processors() {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn emitters_that_smooth_surfaces_mirror_are_the_processors() {
-    let Some(device) = device() else { return };
+    let device = device();
     let mirror = Material::Reflective { color: Rgb::new(0.9, 0.8, 0.7), diffuse: 0.5, mirror: 0.4 };
     for suns in [false, true] {
         let mut scene = named("paper-field-20.toml");
@@ -322,8 +330,9 @@ fn emitters_that_smooth_surfaces_mirror_are_the_processors() {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn glass_that_stands_alone_is_the_processors() {
-    let Some(device) = device() else { return };
+    let device = device();
     for (name, color) in [("clear", Rgb::ONE), ("tinted", Rgb::new(0.9, 0.7, 0.95))] {
         for background in [false, true] {
             for lights in [false, true] {
@@ -358,8 +367,9 @@ fn smooth_materials() -> Vec<(&'static str, Material)> {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn caustics_are_the_processors() {
-    let Some(device) = device() else { return };
+    let device = device();
     let [rough, ..] = &rough_materials()[..] else { panic!("there are some") };
     for (name, smooth) in smooth_materials() {
         for (suns, emitters) in [(true, false), (false, true), (true, true)] {
@@ -380,8 +390,9 @@ fn caustics_are_the_processors() {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn whitted_ray_tracing_is_the_processors() {
-    let Some(device) = device() else { return };
+    let device = device();
     let mut all: Vec<Material> =
         opaque_materials().into_iter().map(|(_, material)| material).collect();
     all.push(Material::Dielectric { ior: 1.5, color: Rgb::new(0.9, 1.0, 0.8) });
@@ -438,8 +449,9 @@ fn sky_picture(width: u32, height: u32, sun: bool) -> Image {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn pictures_of_skies_are_the_processors() {
-    let Some(device) = device() else { return };
+    let device = device();
     for (size, sun, illuminates) in [
         ((40, 20), true, true),
         ((3, 2), false, true),
@@ -479,8 +491,9 @@ fn eye_of(scene: &Scene) -> DVec3 {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn nested_and_overlapping_glass_is_the_processors() {
-    let Some(device) = device() else { return };
+    let device = device();
     for tint in [Rgb::ONE, Rgb::new(0.9, 0.95, 0.7)] {
         let mut scene = named("paper-field-20.toml");
         diffuse(&mut scene);
@@ -514,8 +527,9 @@ fn nested_and_overlapping_glass_is_the_processors() {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn paths_of_many_bounces_are_the_processors() {
-    let Some(device) = device() else { return };
+    let device = device();
     let mut scene = named("paper-field-20.toml");
     diffuse(&mut scene);
     let white = Material::Lambertian { color: Rgb::splat(0.98) };
@@ -531,8 +545,9 @@ fn paths_of_many_bounces_are_the_processors() {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn scenes_that_devices_follow_are_the_processors() {
-    let Some(device) = device() else { return };
+    let device = device();
     let mut followed = Vec::new();
     for path in files() {
         let scene = load(&path);
@@ -551,8 +566,9 @@ fn scenes_that_devices_follow_are_the_processors() {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn looks_of_particles_are_the_processors() {
-    let Some(device) = device() else { return };
+    let device = device();
     // The processor renders translucent ones.
     let opaque = Preset::ALL.into_iter().filter(|preset| preset.material(1).opacity() == 1.0);
     for preset in opaque {
@@ -571,8 +587,9 @@ fn looks_of_particles_are_the_processors() {
 type Change = fn(&mut Scene);
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn settings_of_paths_are_heeded() {
-    let Some(device) = device() else { return };
+    let device = device();
     let changes: [(&str, Change); 9] = [
         ("box", |scene| scene.settings.filter = Filter::Box),
         ("gaussian", |scene| scene.settings.filter = Filter::Gaussian),
@@ -605,8 +622,9 @@ fn divided_scene() -> Scene {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn renders_that_are_resumed_or_meet_an_error_are_the_processors() {
-    let Some(device) = device() else { return };
+    let device = device();
     let mut scene = divided_scene();
     let mut world = World::build(&scene).unwrap();
     let whole = image(&world, &scene);
@@ -637,8 +655,9 @@ fn renders_that_are_resumed_or_meet_an_error_are_the_processors() {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn parts_of_both_merge_to_the_whole() {
-    let Some(device) = device() else { return };
+    let device = device();
     let scene = divided_scene();
     let mut world = World::build(&scene).unwrap();
     let whole = image(&world, &scene);
@@ -663,8 +682,9 @@ fn parts_of_both_merge_to_the_whole() {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn paths_are_finished_without_the_device_that_is_taken_away() {
-    let Some(device) = device() else { return };
+    let device = device();
     let scene = divided_scene();
     let mut world = World::build(&scene).unwrap();
     let own = image(&world, &scene).image;
@@ -708,8 +728,9 @@ fn what_devices_do_not_do_is_told() {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn random_scenes_are_the_processors() {
-    let Some(device) = device() else { return };
+    let device = device();
     let mut all = Answered::default();
     // For more scenes.
     let count = std::env::var("SPHERULE_SCENES").map_or(150, |count| count.parse().unwrap());
@@ -735,8 +756,9 @@ fn random_scenes_are_the_processors() {
 }
 
 #[test]
+#[ignore = "needs a GPU, or Vulkan in software"]
 fn coincident_spheres_are_known() {
-    let Some(device) = device() else { return };
+    let device = device();
     let mut scene = named("weekend.toml");
     let count = scene.spheres.len();
     for row in 0..count {
