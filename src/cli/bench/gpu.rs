@@ -3,7 +3,7 @@
 use super::super::devices;
 use crate::cli::names::Device as Choice;
 use spherule_gpu::{AdapterSummary, Device, DeviceTree, QueryStage, QueryTimes};
-use spherule_measure::bench::convergence::Reference;
+use spherule_measure::bench::convergence::{Reference, reaches};
 use spherule_measure::bench::rounds::{Times, clock};
 use spherule_measure::bench::scenes::{FIELD, NamedScene};
 use spherule_measure::bench::{BenchError, Options, Progress};
@@ -30,6 +30,9 @@ const SOFTWARE: &str = "The adapter is software, which is no GPU: its rates show
 
 /// Minimum duration of a turn in seconds; short ones are repeated.
 const TURN: f64 = 0.02;
+
+/// The error that times are interpolated to: the root mean square, in linear radiance.
+const RMSE: f64 = 0.01;
 
 /// Results for one class of rays.
 struct Outcome {
@@ -101,7 +104,10 @@ pub(super) fn measure(options: &Options, progress: Progress) -> Result<Report, B
     let note = if device.summary().is_software() { SOFTWARE } else { "" };
     let mut settings = options.settings();
     settings.push(("adapter".to_owned(), adapter.clone()));
-    let mut tables = vec![rates(&outcomes), prepared(&preparations), errors(&images)];
+    let mut tables =
+        vec![rates(&outcomes), prepared(&preparations), errors(&images), times_to_error(&images)];
+    // Most sets of spheres have no images.
+    tables.retain(|table| !table.rows.is_empty());
     for table in &mut tables {
         table.notes.push(format!("{note}Adapter: {adapter}."));
     }
@@ -397,6 +403,36 @@ fn errors(images: &[ImageOutcome]) -> Table {
     table
 }
 
+/// Returns a table of the times to an error, one row for each scene; without numbers if none of its images reaches it.
+fn times_to_error(images: &[ImageOutcome]) -> Table {
+    let columns = vec![
+        Column::new("scene", "Scene that is rendered."),
+        Column::new("samples", "Samples per pixel for the error, interpolated."),
+        Column::new("GPU", "Time to the error with the GPU.").group("time to it").unit("ms"),
+        Column::new("processor", "Time to the error without it.").unit("ms"),
+        Column::new("ratio", "Speedup with the GPU.").unit("processor"),
+    ];
+    let mut table = Table::new("gpu-rmse", format!("Time to an RMSE of {RMSE}"), columns);
+    for images in images.chunk_by(|image, next| image.scene == next.scene) {
+        let interpolate = |of: &dyn Fn(&ImageOutcome) -> f64| {
+            let known = images.iter().filter(|image| image.rmse > 0.0);
+            reaches(&known.map(|image| (of(image), image.rmse)).collect::<Vec<_>>(), RMSE)
+        };
+        let samples = interpolate(&|image| f64::from(image.samples));
+        let [gpu, processor] = [0, 1]
+            .map(|contestant| interpolate(&|image| 1e3 * image.times.seconds(contestant).median));
+        let ratio = gpu.zip(processor).map(|(gpu, processor)| processor / gpu);
+        table.push([
+            images[0].scene.as_str().into(),
+            samples.into(),
+            gpu.into(),
+            processor.into(),
+            ratio.into(),
+        ]);
+    }
+    table
+}
+
 fn plot(outcomes: &[Outcome], adapter: &str) -> Plot {
     let of = |class: Class| outcomes.iter().filter(move |outcome| outcome.class == class);
     let series = |class: Class| {
@@ -413,5 +449,29 @@ fn plot(outcomes: &[Outcome], adapter: &str) -> Plot {
         place: Axis::names(of(Class::Camera).map(|outcome| outcome.scene.name)),
         value: Axis::log("rate of queries", "million rays per second"),
         series: Class::ALL.map(series).to_vec(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spherule_measure::report::Cell;
+
+    #[test]
+    fn times_to_an_error_are_interpolated() {
+        let image = |(scene, samples, rmse): (&str, u32, f64)| {
+            let turn = |contestant| Ok::<_, ()>(f64::from(samples) * [1.0, 8.0][contestant]);
+            let times = Times::measure(1, 2, turn).expect("times");
+            ImageOutcome { scene: scene.to_owned(), samples, rmse, unknown: None, times }
+        };
+        let images = [("a", 16, 0.02), ("a", 256, 0.005), ("b", 1, 0.5), ("b", 4, 0.25)].map(image);
+        let table = times_to_error(&images);
+        let expected = [64.0, 64e3, 512e3, 8.0];
+        for (cell, expected) in table.rows[0][1..].iter().zip(expected) {
+            let Cell::Number(number) = cell else { panic!("{cell:?}") };
+            assert!((number / expected - 1.0).abs() < 1e-9, "{number} {expected}");
+        }
+        assert_eq!(table.rows[1][0], Cell::from("b"));
+        assert!(table.rows[1][1..].iter().all(|cell| *cell == Cell::None));
     }
 }

@@ -30,8 +30,9 @@ pub(super) fn equal(first: &[(f64, f64)], second: &[(f64, f64)]) -> Option<Equal
     Some(EqualError { value, places: [reaches(first, value)?, reaches(second, value)?] })
 }
 
-/// Finds where a curve first reaches the value; `None` if it never does, or begins below it.
-fn reaches(points: &[(f64, f64)], value: f64) -> Option<f64> {
+/// Finds where a falling curve, of places and values, first reaches the value; `None` if it never does, or begins below
+/// it. Points are interpolated linearly in log-log space.
+pub fn reaches(points: &[(f64, f64)], value: f64) -> Option<f64> {
     if points.first()?.1 <= value {
         return points.first().filter(|first| first.1 == value).map(|first| first.0);
     }

@@ -11,6 +11,7 @@ mod reference;
 mod tables;
 mod variants;
 
+pub use fit::reaches;
 pub use reference::{Reference, SquaredError};
 
 use self::outcome::{Outcome, Quality};
