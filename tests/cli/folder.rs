@@ -4,6 +4,7 @@
 
 use crate::process::run;
 use serde_json::Value;
+use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -22,7 +23,7 @@ impl Folder {
 
     /// Returns a command for the program in the folder.
     pub(crate) fn command(&self, args: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_spherule"));
+        let mut command = Command::new(program());
         command.args(args).current_dir(&self.0);
         command
     }
@@ -37,7 +38,7 @@ impl Folder {
     #[track_caller]
     pub(crate) fn shell(&self, line: &str, args: &[&str]) -> Output {
         let mut shell = Command::new("sh");
-        shell.args(["-c", line, env!("CARGO_BIN_EXE_spherule")]).args(args);
+        shell.args(["-c", line]).arg(program()).args(args);
         run(shell.current_dir(&self.0))
     }
 
@@ -77,6 +78,12 @@ impl Folder {
     pub(crate) fn root(&self) -> &Path {
         self.0.path()
     }
+}
+
+/// Returns the path of the program: that of the variable if there is one, as on another machine by `tools/gpu-check`.
+fn program() -> OsString {
+    let variable = std::env::var_os("CARGO_BIN_EXE_spherule");
+    variable.unwrap_or_else(|| env!("CARGO_BIN_EXE_spherule").into())
 }
 
 pub(crate) fn text(bytes: &[u8]) -> String {

@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::device;
+use common::{device, scene_folder};
 use spherule_core::internals::bvh::UNKNOWN;
 use spherule_core::internals::ray::{MISS, Rays};
 use spherule_gpu::{DeviceTree, FirstStages, Integrator as DeviceIntegrator};
@@ -19,7 +19,6 @@ use spherule_render::sampling::{PixelFilter, Sampler};
 use spherule_render::scene::{Integrator, Lens, Scene};
 use spherule_render::settings::{Filter, SamplerKind};
 use std::ops::Range;
-use std::path::Path;
 use std::sync::Arc;
 
 /// Pixels, and samples of each; the latter from two blocks of the Sobol sequence.
@@ -38,8 +37,7 @@ fn compare(
         ("paper-grid-20.toml", Filter::Box),
         ("veach.toml", Filter::BlackmanHarris),
     ] {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
-        let mut scene = Scene::load(&folder.join(name)).unwrap();
+        let mut scene = Scene::load(&scene_folder().join(name)).unwrap();
         let settings = &mut scene.settings;
         (settings.width, settings.height, settings.filter) = (40, 30, filter);
         (settings.seed, settings.integrator) = (0x0123_4567_89ab, Integrator::Ao { distance: 3.0 });

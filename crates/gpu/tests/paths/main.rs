@@ -6,7 +6,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
-use common::device;
+use common::{device, scene_folder, scratch_folder};
 use glam::DVec3;
 use spherule_gpu::{Answered, Device, DeviceError, DeviceTree, Integrator as DeviceIntegrator};
 use spherule_measure::random_scene;
@@ -28,9 +28,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Returns the files of scenes.
 fn files() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     let mut files: Vec<PathBuf> =
-        folder.read_dir().unwrap().map(|entry| entry.unwrap().path()).collect();
+        scene_folder().read_dir().unwrap().map(|entry| entry.unwrap().path()).collect();
     files.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
     files.sort();
     files
@@ -47,7 +46,7 @@ fn load(path: &Path) -> Scene {
 
 /// Reads a scene of the repository by its name.
 fn named(name: &str) -> Scene {
-    load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name))
+    load(&scene_folder().join(name))
 }
 
 /// Gives the paths of a world to a device.
@@ -736,7 +735,7 @@ fn random_scenes_are_the_processors() {
     let count = std::env::var("SPHERULE_SCENES").map_or(150, |count| count.parse().unwrap());
     for seed in 0..count {
         // The file of a scene that fails stays.
-        let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("random-{seed}.toml"));
+        let file = scratch_folder().join(format!("random-{seed}.toml"));
         std::fs::write(&file, random_scene(seed)).unwrap();
         let mut scene = Scene::load(&file).unwrap();
         if seed % 8 == 0 {
