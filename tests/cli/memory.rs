@@ -171,18 +171,21 @@ fn limits_of_the_shell_are_obeyed_and_named() {
     let folder = Folder::new();
     folder.write("a.toml", "[camera]\nfit = true\n[[generate]]\nkind = \"field\"\ncount = 707\n");
     folder.write("a.txt", &rows("", |_, [x, y, z]| format!("{x} {y} {z} 0.3")));
+    folder.write("one.txt", "0 0 0 0.3\n");
+    let limited = |file: &str, option: &str, bytes: u64| {
+        let line = format!("ulimit -{option} {}; exec \"$0\" \"$@\"", bytes >> 10);
+        folder.shell(&line, &[&["render", file, "--threads", "2"], &TINY[..]].concat())
+    };
+    // Virtual memory includes that of the program itself, of which features and optimization make more or less.
+    let suffices = |bytes: &u64| limited("one.txt", "v", *bytes).status.success();
+    let own = (4..64).map(|step| step << 22).find(suffices).expect("a limit that suffices");
     for (file, least) in [("a.toml", 40_u64), ("a.txt", 32)] {
-        let limited = |option: &str, bytes: u64| {
-            let line = format!("ulimit -{option} {}; exec \"$0\" \"$@\"", bytes >> 10);
-            folder.shell(&line, &[&["render", file, "--threads", "2"], &TINY[..]].concat())
-        };
-        // Virtual memory includes that of the program itself.
-        let named = [("v", 30 << 20, "virtual memory (ulimit -v)"), ("d", 0, "data (ulimit -d)")];
+        let named = [("v", own, "virtual memory (ulimit -v)"), ("d", 0, "data (ulimit -d)")];
         for (option, own, name) in named {
-            let few = limited(option, own + COUNT as u64 * least);
+            let few = limited(file, option, own + COUNT as u64 * least);
             assert_eq!(few.status.code(), Some(1), "{file} -{option}: {}", text(&few.stderr));
             assert!(text(&few.stderr).contains(name), "{file}: {}", text(&few.stderr));
-            let enough = limited(option, 1 << 30);
+            let enough = limited(file, option, 1 << 30);
             assert!(enough.status.success(), "{file} -{option}: {}", text(&enough.stderr));
         }
     }
