@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// Opens a device; fails if there is none.
 pub(crate) fn device() -> Arc<Device> {
-    Device::best(true).map(Arc::new).unwrap_or_else(|error| panic!("{error}"))
+    Arc::new(Device::best(true).unwrap_or_else(|error| panic!("{error}")))
 }
 
 /// Returns the scene files of the repository.
