@@ -27,7 +27,9 @@ fn interrupted_renders_are_saved() {
     use crate::process::wait_for;
     use spherule_render::image::Image;
     let folder = Folder::new();
-    let mut command = folder.command(&["render", "--size", "40x24", "--spp", "10000000"]);
+    // It ends by itself even if the test is killed.
+    let long = ["render", "--size", "40x24", "--spp", "10000000", "--time", "5m"];
+    let mut command = folder.command(&long);
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
     let render = Process::start(&mut command);
     wait_for("a handler of signals", || catches_interrupts(render.id()));

@@ -7,9 +7,17 @@ use std::fs;
 use std::path::Path;
 use std::process::Stdio;
 
-/// Arguments of a very long render.
-pub(crate) const LONG: [&str; 7] =
-    ["render", "--size", "80x60", "--spp", "1000000", "--quiet", "--checkpoint-every=20ms"];
+/// Arguments of a very long render, which ends by itself even if the test is killed.
+pub(crate) const LONG: [&str; 8] = [
+    "render",
+    "--size",
+    "80x60",
+    "--spp",
+    "1000000",
+    "--quiet",
+    "--time=5m",
+    "--checkpoint-every=20ms",
+];
 
 /// Starts the program in a folder.
 pub(crate) fn start(folder: &Folder, args: &[&str]) -> Process {
