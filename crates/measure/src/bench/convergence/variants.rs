@@ -160,12 +160,15 @@ mod tests {
     fn variants_converge_to_the_same_image() {
         for case in cases(&quick(&[])).unwrap() {
             let scene = case.scene.resized(16);
-            let expected = Reference::new(&scene, &scene.world().unwrap(), 512, None).unwrap();
+            let expected = Reference::new(&scene, &scene.world().unwrap(), 128, None).unwrap();
             for variant in case.variants {
                 let mut other = scene.clone();
                 (variant.change)(&mut other.scene.settings, &mut Tracer::default());
+                if other.scene.settings == scene.scene.settings {
+                    continue;
+                }
                 let world = other.world().unwrap();
-                let found = Reference::new(&other, &world, 512, None).unwrap();
+                let found = Reference::new(&other, &world, 128, None).unwrap();
                 let difference = expected.squares(&found.mean).absolute;
                 let estimate = expected.error.absolute + found.error.absolute;
                 assert!(

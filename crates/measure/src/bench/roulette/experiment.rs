@@ -168,7 +168,7 @@ mod tests {
     #[test]
     fn four_times_the_samples_have_half_the_error() {
         let scene = PaperScene::GRID.scene((32, 1)).unwrap();
-        let mut experiment = Experiment::new(&scene, 1024, 2).unwrap();
+        let mut experiment = Experiment::new(&scene, 256, 2).unwrap();
         experiment.setup.settings.sampler = SamplerKind::Independent;
         let outcomes = experiment.run(&[1, 4].map(|spp| (STRATEGIES[3], spp))).unwrap();
         let ratio = outcomes[0].error.median / outcomes[1].error.median;
