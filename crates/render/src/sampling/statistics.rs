@@ -101,14 +101,15 @@ impl Grid {
         let steps = self.steps;
         let (rows, columns) = (self.rings * steps, self.sectors * steps);
         let mut integrals = vec![0.0; self.rings * self.sectors];
+        let middle = |column: usize| (TAU * (column as f64 + 0.5) / columns as f64).sin_cos();
+        let middles: Vec<(f64, f64)> = (0..columns).map(middle).collect();
         for row in 0..rows {
             let part = (row as f64 + 0.5) / rows as f64;
             let (sine, cosine) = (self.angle * part.powf(self.power)).sin_cos();
             // The angle's extent of a row, and its solid angle per column.
             let width = self.angle * self.power * part.powf(self.power - 1.0) / rows as f64;
             let area = sine * width * TAU / columns as f64;
-            for column in 0..columns {
-                let (sin, cos) = (TAU * (column as f64 + 0.5) / columns as f64).sin_cos();
+            for (column, &(sin, cos)) in middles.iter().enumerate() {
                 let local = DVec3::new(sine * cos, sine * sin, cosine);
                 let density = f64::from(pdf(self.basis.to_world(local.as_vec3())));
                 integrals[row / steps * self.sectors + column / steps] += density * area;

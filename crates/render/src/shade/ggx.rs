@@ -89,7 +89,7 @@ mod tests {
         for alpha in [0.02, 0.1, 0.3, 0.7, 1.0] {
             for cosine in [1.0, 0.7, 0.2, 0.02] {
                 let outgoing = at(cosine);
-                let samples = random_pairs(400_000, 8)
+                let samples = random_pairs(200_000, 8)
                     .map(|u| Some(sample_visible_normal(alpha, outgoing.into(), u).into()));
                 let pdf = |normal: Vec3| visible_normal_pdf(alpha, outgoing.into(), normal.into());
                 let grid = Grid { angle: 0.5 * f64::from(PI), ..Grid::lobe(Vec3::Z) };

@@ -217,7 +217,7 @@ pub(crate) mod tests {
         grid: Grid,
         none: Option<f64>,
     ) {
-        let samples = numbers(9, 500_000).map(|u| {
+        let samples = numbers(9, 250_000).map(|u| {
             let scatter = sample(material, outgoing, u)?;
             scatter.pdf.map(|_| scatter.incoming)
         });

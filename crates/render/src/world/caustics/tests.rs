@@ -130,19 +130,22 @@ fn rays_along_connections_reach_the_emitter() {
     assert!(met.iter().all(|&met| met > 1000), "{met:?}");
 }
 
-/// Counts the roots of the turn by small steps.
-fn roots_by_scan(sphere: &SpecularSphere<f64>, turn: f64) -> usize {
-    const STEPS: u32 = 20_000;
-    let rest = |step: u32| {
-        let sine = (0.5 * PI * f64::from(step) / f64::from(STEPS)).sin();
+/// Counts the roots of the turn by small steps, at angles with these sines.
+fn roots_by_scan(sphere: &SpecularSphere<f64>, turn: f64, angles: &[(f64, f64)]) -> usize {
+    let is_below = angles.iter().map(|(angle, sine)| {
         let [k, l] = sphere.distance.map(|distance| (sphere.radius / distance * sine).acos());
-        k + l + 2.0 * (sphere.index * sine).acos() - 2.0 * sine.acos() - PI - turn
-    };
-    (0..STEPS).filter(|&step| (rest(step) < 0.0) != (rest(step + 1) < 0.0)).count()
+        let beside = PI / 2.0 - angle;
+        k + l + 2.0 * (sphere.index * sine).acos() - 2.0 * beside - PI < turn
+    });
+    let mut last = None;
+    is_below.filter(|&now| last.replace(now).is_some_and(|before| before != now)).count()
 }
 
 #[test]
 fn all_paths_are_found() {
+    const STEPS: u32 = 20_000;
+    let angle = |step| 0.5 * PI * f64::from(step) / f64::from(STEPS);
+    let angles: Vec<(f64, f64)> = (0..=STEPS).map(angle).map(|at| (at, at.sin())).collect();
     let mut random = Random::new(2);
     for _ in 0..400 {
         let setting = Setting::random(&mut random);
@@ -153,7 +156,7 @@ fn all_paths_are_found() {
             (between - PI, &[CausticPath::Paraxial, CausticPath::Marginal][..]),
         ];
         for (turn, paths) in cases {
-            let expected = roots_by_scan(&setting.sphere(paths[0]), turn);
+            let expected = roots_by_scan(&setting.sphere(paths[0]), turn, &angles);
             let found = paths.iter().filter(|&&path| setting.connect(path).found).count();
             assert_eq!(found, expected, "{paths:?} {turn}");
         }

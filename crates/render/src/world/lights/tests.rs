@@ -58,7 +58,7 @@ fn emissive_spheres_are_sampled_by_their_density() {
         let to_center = center - origin.as_dvec3();
         let angle = (radius / to_center.length()).asin();
         let axis = to_center.normalize().as_vec3();
-        let directions = random_pairs(400_000, 2).map(|u| Some(view.sample(u)?.direction));
+        let directions = random_pairs(200_000, 2).map(|u| Some(view.sample(u)?.direction));
         let pdf = view.sample([0.5; 2]).and_then(|sample| sample.pdf).unwrap();
         Grid::cone(axis, angle).check(directions, |_| pdf, Some(0.0));
         let of_all = world.lights.emitter_pdf(&world.spheres, row as u32, &at, false);
@@ -87,7 +87,7 @@ fn suns_are_sampled_by_their_density() {
             assert!(degrees == 0.0 && view.sample([0.3; 2]).unwrap().weight == sun.irradiance);
             continue;
         };
-        let directions = random_pairs(400_000, 4).map(|u| Some(view.sample(u)?.direction));
+        let directions = random_pairs(200_000, 4).map(|u| Some(view.sample(u)?.direction));
         Grid::cone(sun.direction, degrees.to_radians()).check(
             directions,
             |_| cone.pdf(),

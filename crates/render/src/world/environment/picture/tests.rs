@@ -91,7 +91,7 @@ fn grid(picture: &Picture) -> Grid {
 fn directions_follow_the_density() {
     for (seed, picture) in pictures().iter().enumerate() {
         for part in 0..picture.parts.len() {
-            let sampled = random_pairs(400_000, seed as u64).map(|u| sample(picture, part, u));
+            let sampled = random_pairs(200_000, seed as u64).map(|u| sample(picture, part, u));
             let directions = sampled.map(|sample| sample.map(|sample| sample.direction.into()));
             // Rounding may move directions to the other part.
             let inside = directions.filter(|direction: &Option<Vec3>| {
@@ -275,7 +275,7 @@ fn irradiance_of_a_bare_floor_has_the_exact_mean_and_variance() {
 
 fn check_moments(picture: &Picture, part: usize) {
     let [mean, variance, fourth] = moments(picture, part);
-    let count = 400_000;
+    let count = 200_000;
     let (mut sum, mut squares) = (0.0, 0.0);
     for sample in random_pairs(count, 3).map(|u| sample(picture, part, u)) {
         let value = sample.map_or(0.0, |sample| {
