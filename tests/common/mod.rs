@@ -219,13 +219,21 @@ pub(crate) fn each_over_seeds<const N: usize>(
 /// Asserts that images of two scenes agree in each of six bands of rows.
 #[track_caller]
 pub(crate) fn assert_scenes_agree(a: &Scene, b: &Scene, what: &str) {
+    assert_scenes_agree_with(a, std::slice::from_ref(b), what);
+}
+
+/// Asserts the same of one scene and each of the others.
+#[track_caller]
+pub(crate) fn assert_scenes_agree_with(scene: &Scene, others: &[Scene], what: &str) {
     let bands = |image: &Image| {
         let rows = image.height / 6;
         [0, 1, 2, 3, 4, 5].map(|band| mean_of_rows(image, band * rows..(band + 1) * rows))
     };
-    let pairs = each_over_seeds(a, bands).into_iter().zip(each_over_seeds(b, bands));
-    for (band, (a, b)) in pairs.enumerate() {
-        assert_agree(a, b, &format!("{what}, band {band}"));
+    let means = each_over_seeds(scene, bands);
+    for (place, other) in others.iter().enumerate() {
+        for (band, (a, b)) in means.iter().zip(each_over_seeds(other, bands)).enumerate() {
+            assert_agree(*a, b, &format!("{what}, {place}, band {band}"));
+        }
     }
 }
 

@@ -13,7 +13,7 @@ use std::path::Path;
 
 /// Independent images of each scene and way, and samples of their pixels.
 const IMAGES: u64 = 12;
-const SAMPLES: u32 = 64;
+const SAMPLES: u32 = 32;
 
 /// Tolerance in standard errors, which are themselves estimated, and of distributions with long tails.
 const TOLERANCE: f64 = 6.0;

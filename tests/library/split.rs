@@ -107,18 +107,19 @@ fn assert_same(a: &Render, b: &Render, what: &str) {
 fn merged_parts_equal_the_whole() {
     let scene = still_life();
     let world = World::build(&scene).expect("the scene is sound");
-    for options in [Options::default(), STATISTICS] {
+    let splits = [
+        (Split::Samples, 7),
+        (Split::Tiles, 7),
+        (Split::Samples, 1),
+        (Split::Samples, 2),
+        (Split::Samples, 3),
+        (Split::Samples, 64),
+        (Split::Tiles, 2),
+        (Split::Tiles, 24),
+    ];
+    for (options, splits) in [(Options::default(), &splits[..2]), (STATISTICS, &splits[..])] {
         let straight = render(&world, &scene.settings, &options).expect("settings in range");
-        for (split, count) in [
-            (Split::Samples, 1),
-            (Split::Samples, 2),
-            (Split::Samples, 3),
-            (Split::Samples, 7),
-            (Split::Samples, 64),
-            (Split::Tiles, 2),
-            (Split::Tiles, 7),
-            (Split::Tiles, 24),
-        ] {
+        for &(split, count) in splits {
             let parts = parts(&world, &scene.settings, &options, split, count);
             let merged = merge(false, parts).expect("they are all there").render();
             assert!(merged.complete);

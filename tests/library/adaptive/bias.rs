@@ -6,6 +6,7 @@ use spherule_render::image::Image;
 use spherule_render::render::{End, Options, Render, render};
 use spherule_render::scene::{Scene, Settings};
 use spherule_render::world::World;
+use std::sync::OnceLock;
 
 /// Probability of a failure without bias, one in a million for either number, and the corresponding normal
 /// quantile.
@@ -65,10 +66,13 @@ fn plain(scene: &Scene, spp: u32, statistics: bool) -> impl Fn(u64) -> Render + 
     shots(scene, Settings { spp, ..scene.settings.clone() }, statistics)
 }
 
-/// Returns means and errors of plain renders.
-fn truth(scene: &Scene) -> Means {
-    let shot = plain(scene, 1024, false);
-    Means::of((0..100).map(|seed| shot(1_000_000 + seed).image))
+/// Returns means and errors of plain renders of the scene.
+fn truth() -> &'static Means {
+    static TRUTH: OnceLock<Means> = OnceLock::new();
+    TRUTH.get_or_init(|| {
+        let shot = plain(&scene(), 1024, false);
+        Means::of((0..100).map(|seed| shot(1_000_000 + seed).image))
+    })
 }
 
 #[test]
@@ -83,7 +87,7 @@ fn no_pixel_is_biased_by_stopping() {
         (fewest, most) = (fewest.min(render.samples.least), most.max(render.samples.most));
         render.image
     });
-    let found = Means::of(pictures).against(&truth(&scene));
+    let found = Means::of(pictures).against(truth());
     assert!(found[0] < QUANTILE && found[1].abs() < QUANTILE, "{found:?}");
     assert!(most >= 8 * fewest, "{fewest} to {most} samples decide nothing");
 }
@@ -104,7 +108,7 @@ fn bias_would_be_detected() {
         early += 1;
         first.image
     });
-    let found = Means::of(pictures).against(&truth(&scene));
+    let found = Means::of(pictures).against(truth());
     assert!(found[0] > 1.5 * QUANTILE && found[1] < -QUANTILE, "{found:?}");
     assert!((60..540).contains(&early), "{early}");
 }
