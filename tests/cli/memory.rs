@@ -133,6 +133,7 @@ fn estimates_are_right_for_every_format_of_text() {
 #[test]
 fn estimates_are_right_for_large_pictures() {
     let folder = Folder::new();
+    folder.write("a.toml", "[camera]\nfit = true\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n");
     for (output, layers) in [
         ("a.png", None),
         ("a.ppm", None),
@@ -141,7 +142,8 @@ fn estimates_are_right_for_large_pictures() {
         ("a.exr", Some("all")),
     ] {
         let layers = layers.map_or(Vec::new(), |layers| vec!["--layers", layers]);
-        let args = ["render", "--size", "1400x1000", "--spp", "1", "--quiet", "--json", "-o"];
+        let args =
+            ["render", "a.toml", "--size", "1400x1000", "--spp", "1", "--quiet", "--json", "-o"];
         let report = folder.json(&[&args[..], &[output], &layers].concat());
         let number = |name: &str| report["statistics"][name].as_f64().expect("a number");
         let ratio = number("estimated_peak_bytes") / number("peak_bytes");

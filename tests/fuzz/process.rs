@@ -1,7 +1,7 @@
 //! The parent of the process that runs a target's cases, which may answer, end or hang.
 
 use crate::worker;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, Stdio};
@@ -42,7 +42,9 @@ impl<'t> Process<'t> {
     /// Runs one case; the error says how it failed.
     pub(crate) fn run(&mut self, bytes: &[u8]) -> Result<(), String> {
         let path = self.folder.path().join("case");
-        overwrite(&path, bytes);
+        // Truncating a file that is there would wait for the disk.
+        _ = fs::remove_file(&path);
+        fs::write(&path, bytes).expect("a folder that takes files");
         let stderr = self.stderr();
         let running = self.running.get_or_insert_with(|| Running::start(self.target, &stderr));
         let asked = writeln!(running.input, "{}", path.display());
@@ -78,15 +80,6 @@ impl<'t> Process<'t> {
         let end = String::from_utf8_lossy(&stderr[stderr.len().saturating_sub(REPORTED)..]);
         end.trim().to_owned()
     }
-}
-
-/// Replaces the content of a file. Unlike truncating it to nothing first, this does not make the file system write to the disk
-/// when the file is closed.
-fn overwrite(path: &Path, bytes: &[u8]) {
-    let options = OpenOptions::new().write(true).create(true).truncate(false).open(path);
-    let mut file = options.expect("a folder that takes files");
-    file.write_all(bytes).expect("a disk with space");
-    file.set_len(bytes.len() as u64).expect("a file");
 }
 
 impl Running {

@@ -7,8 +7,6 @@ use spherule_particles::{
     Columns, Element, FileError, Format, FrameChoice, Frames, LengthUnit, ParticleFrame,
     ReadOptions, count_frames, read_frame,
 };
-use std::fs::OpenOptions;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Trajectories with the four frames of `water.dcd`.
@@ -461,18 +459,11 @@ fn formats_are_told_by_content() {
     assert_eq!(text.expect_err("another format").message, "is not xtc");
 }
 
-/// Replaces the content of a file. Unlike truncating it to nothing first, this does not make the file system write to the disk
-/// when the file is closed.
-fn overwrite(path: &Path, content: &[u8]) {
-    let options = OpenOptions::new().write(true).create(true).truncate(false).open(path);
-    let mut file = options.expect("a file");
-    file.write_all(content).expect("space");
-    file.set_len(content.len() as u64).expect("a file");
-}
-
 /// Reads all frames of a file with this content, as far as they go.
 fn read_all(path: &Path, content: &[u8]) -> (u64, Result<u64, FileError>) {
-    overwrite(path, content);
+    // Truncating a file that is there would wait for the disk.
+    _ = std::fs::remove_file(path);
+    std::fs::write(path, content).expect("a file");
     let options = ReadOptions::default();
     let mut read = 0;
     let Ok(frames) = Frames::open(path, &options) else { return (0, Ok(0)) };

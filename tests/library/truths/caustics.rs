@@ -14,7 +14,7 @@ fn lit() -> Scene {
     ground(&mut scene, lambertian(0.7));
     sphere(&mut scene, [1.5, 1.0, 4.0], 0.8, emitter(20.0, 0.3));
     look(&mut scene, DVec3::new(0.0, -7.0, 4.0), DVec3::new(0.0, 0.0, 0.3), 35.0);
-    (scene.settings.depth, scene.settings.spp) = (Some(6), 32);
+    scene.settings.depth = Some(6);
     scene
 }
 

@@ -167,7 +167,7 @@ fn path_and_whitted_agree_on_direct_light() {
 #[test]
 fn sampling_one_light_equals_the_sum_over_all() {
     let plastic = Material::Plastic { color: Rgb::splat(0.7), ior: 1.5 };
-    for (count, made_of) in [(3, lambertian(0.6)), (100, lambertian(0.6)), (100, plastic)] {
+    for (count, made_of) in [(3, lambertian(0.6)), (40, lambertian(0.6)), (40, plastic)] {
         let mut scene = dark();
         ground(&mut scene, made_of.clone());
         sphere(&mut scene, [0.0, 0.0, 1.0], 1.0, made_of.clone());
@@ -182,7 +182,7 @@ fn sampling_one_light_equals_the_sum_over_all() {
         look(&mut scene, DVec3::new(4.0, -4.0, 3.0), DVec3::new(0.0, 0.0, 0.7), 40.0);
         scene.settings.depth = Some(1);
         let [path, whitted] =
-            [(Integrator::Path, 256), (Integrator::Whitted { shadow_samples: 1 }, 16)].map(
+            [(Integrator::Path, 128), (Integrator::Whitted { shadow_samples: 1 }, 8)].map(
                 |(integrator, spp)| {
                     scene.settings.integrator = integrator;
                     scene.settings.spp = spp;

@@ -115,7 +115,7 @@ fn a_giant_sphere_is_a_plane() {
         }
         sphere(&mut scene, [8.0, 6.0, 14.0], 2.0, emitter(40.0, 0.0));
         look(&mut scene, DVec3::new(3.0, -6.0, 4.0), DVec3::ZERO, 40.0);
-        (scene.settings.width, scene.settings.height) = (48, 48);
+        (scene.settings.width, scene.settings.height) = (36, 36);
         scene.settings.spp = 32;
         scene.settings.depth = Some(5);
         scene

@@ -7,18 +7,14 @@ use crate::scene::{
     Slice, SliceMode,
 };
 use crate::sealed::HASH_BYTES;
-use std::fs::{self, OpenOptions};
-use std::io::Write;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Replaces the content of a file. Unlike truncating it to nothing first, this does not make the file system write to the disk
-/// when the file is closed.
-fn overwrite(path: &Path, content: &[u8]) {
-    let options = OpenOptions::new().write(true).truncate(false).open(path);
-    let mut file = options.expect("the file is there");
-    file.write_all(content).expect("there is space");
-    file.set_len(content.len() as u64).expect("the file is there");
+/// Replaces a file. Truncating the one that is there would wait for the disk.
+fn replace(path: &Path, content: &[u8]) {
+    fs::remove_file(path).expect("the file is there");
+    fs::write(path, content).expect("there is space");
 }
 
 /// A file of a scene in a folder that is removed with it.
@@ -193,7 +189,7 @@ fn damaged_files_are_refused() {
     let bytes = fs::read(&saved.path).expect("it was written");
     assert!(bytes.len() < 1 << 14, "{}", bytes.len());
     let refused = |bytes: &[u8]| {
-        overwrite(&saved.path, bytes);
+        replace(&saved.path, bytes);
         read(&saved.path).expect_err("it is damaged")
     };
     for length in 0..bytes.len() {
@@ -221,7 +217,7 @@ fn forged_files_neither_panic_nor_hang() {
             forged[at] = value;
             let hash = *blake3::hash(&forged[..content]).as_bytes();
             forged[content..].copy_from_slice(&hash);
-            overwrite(&saved.path, &forged);
+            replace(&saved.path, &forged);
             let Ok(stored) = read(&saved.path) else {
                 refused += 1;
                 continue;
