@@ -7,7 +7,8 @@
 //! Everything here rounds each lane as IEEE 754 says, without horizontal operations, so a lane's
 //! result depends neither on how many lanes there are nor on the processor. `#[inline(always)]` is on everything that
 //! takes or returns lanes here and in the kernels, because a wide value that crosses a real call
-//! goes through memory.
+//! goes through memory. Long functions that several kernels call once for a row are not inlined: a copy in each would be
+//! no faster, and take longer to compile.
 
 mod across;
 mod bits;

@@ -66,7 +66,7 @@ pub(super) fn sample_mirrored_light(
 }
 
 /// Returns the lanes whose mirrored direction may meet a light.
-#[inline(always)]
+#[inline(never)]
 fn lights_toward(world: &World, row: &MirrorRow) -> u32 {
     let mut lanes = 0;
     for sun in &world.lights.suns {

@@ -95,7 +95,7 @@ pub(super) struct ShadowRay {
 
 /// Enqueues the shadow rays in `lanes` of light samples, with the light that arrives if they are not
 /// occluded. Traces the queue first if it is full.
-#[inline(always)]
+#[inline(never)]
 pub fn enqueue_shadow_rays(
     job: &Job,
     work: &mut Workspace,

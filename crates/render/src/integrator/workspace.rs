@@ -262,7 +262,7 @@ impl Workspace {
 
     /// Spawns the next rays of the paths in `lanes`, with these states. Rays inside of a sphere start
     /// with their exit as a hit. Paths that are not in `lanes` end.
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn spawn_rays(
         &mut self,
         world: &World,

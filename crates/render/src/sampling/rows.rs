@@ -228,7 +228,7 @@ impl Sampler {
     }
 
     /// [`Sampler::draw4`] for each, with [alternate](SamplerState::alternate) numbers.
-    #[inline(always)]
+    #[inline(never)]
     fn alternate_row(&self, paths: &SamplerRow, set: u32) -> [F32x16; 4] {
         if let Points::Sobol(sobol) = self.points {
             let SobolPositions { positions, seeds } = paths.positions;
@@ -241,7 +241,7 @@ impl Sampler {
     }
 
     /// [`Sampler::draw4`] for each.
-    #[inline(always)]
+    #[inline(never)]
     pub fn draw4_row(&self, paths: &SamplerRow, set: u32) -> [F32x16; 4] {
         if let Points::Sobol(sobol) = self.points {
             let SobolPositions { positions, seeds } = paths.positions;

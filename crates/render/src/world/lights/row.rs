@@ -165,7 +165,7 @@ impl Lights {
     /// Samples one light for each of the receivers in `lanes`, from a set of random numbers for each:
     /// [`Lights::choose`] and [`Lights::sample`]. Weights and densities include the probability of the
     /// choice.
-    #[inline(always)]
+    #[inline(never)]
     pub fn sample_row(
         &self,
         world: &World,
@@ -193,7 +193,7 @@ impl Lights {
     /// Returns the light that comes from the middle of a light, without chance: from light number `index` if there are
     /// at most [`MAX_MIDDLES`], apart from the environment's picture; otherwise from one that stands for a share of
     /// `1 / MAX_MIDDLES` of the light at each receiver.
-    #[inline(always)]
+    #[inline(never)]
     pub(crate) fn middle_row(
         &self,
         world: &World,
@@ -217,7 +217,7 @@ impl Lights {
     }
 
     /// Samples the lights that were chosen.
-    #[inline(always)]
+    #[inline(never)]
     fn sample_lights(
         &self,
         world: &World,
@@ -260,7 +260,7 @@ impl Lights {
 
     /// Returns the probability with which a part of the environment's picture is sampled, for each of
     /// the receivers in `lanes`.
-    #[inline(always)]
+    #[inline(never)]
     pub fn sky_probabilities(
         &self,
         at: &ReceiverRow,
