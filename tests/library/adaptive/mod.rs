@@ -57,11 +57,11 @@ struct Case {
 }
 
 fn cases() -> Vec<Case> {
+    static CAUSTIC: OnceLock<Vec<f64>> = OnceLock::new();
     let case = |name, scene: Scene, truth: f64| {
         let pixels = (scene.settings.width * scene.settings.height) as usize;
         Case { name, scene, truth: vec![truth; pixels] }
     };
-    static CAUSTIC: OnceLock<Vec<f64>> = OnceLock::new();
     let truth = CAUSTIC.get_or_init(|| image_of(&caustic(), 1 << 13)).clone();
     vec![
         case("heap", with_target(plastic_heap(), 0.03), 1.0),
