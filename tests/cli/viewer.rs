@@ -364,9 +364,9 @@ fn help_fits_every_window_at_every_scale() {
     const MOST: usize = 20;
     let folder = Folder::new();
     for (size, scale) in [("1280x720", "1"), ("640x360", "1.5"), ("320x240", "1")] {
-        let mut script = format!("size {size}\nscale {scale}\nkey tab\nwait 1\nwindow 0.png\n");
-        (1..=MOST).for_each(|page| script += &format!("key ?\nwindow {page}.png\n"));
-        view(&folder, &[], &script);
+        let mut script = vec![format!("size {size}\nscale {scale}\nkey tab\nwait 1\nwindow 0.png")];
+        script.extend((1..=MOST).map(|page| format!("key ?\nwindow {page}.png")));
+        view(&folder, &[], &script.join("\n"));
         let read = |page| Image::read(folder.path(&format!("{page}.png"))).expect("a picture");
         let (plain, mut pages) = (read(0), Vec::new());
         for page in (1..=MOST).map(read).take_while(|page| *page != plain) {
