@@ -73,12 +73,13 @@ fn options_have_an_effect() {
         ["--roulette", "0.5"],
         ["--roulette", "none"],
         ["--depth", "1"],
-        ["--spp", "5"],
     ] {
         assert!(folder.picture("b.ppm", &options) != usual, "{options:?}");
         let other = Image::read(folder.path("b.ppm")).unwrap();
         assert_eq!((other.width, other.height), (40, 24));
     }
+    folder.succeed(&["render", "--size", "40x24", "--spp", "5", "--quiet", "-o", "b.ppm"]);
+    assert!(folder.read("b.ppm") != usual);
 }
 
 #[test]
