@@ -44,7 +44,7 @@ pub(crate) fn wait_for(what: &str, mut holds: impl FnMut() -> bool) {
     let start = Instant::now();
     while !holds() {
         assert!(start.elapsed() < LIMIT, "{what} did not come within {LIMIT:?}");
-        // Polling less often leaves time to the program on a busy machine.
+        // Short beside the two milliseconds between checkpoints of tests that kill.
         thread::sleep(Duration::from_micros(200));
     }
 }

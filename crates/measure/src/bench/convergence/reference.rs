@@ -118,11 +118,11 @@ mod tests {
 
     #[test]
     fn the_halves_estimate_the_error_of_their_mean() {
-        let scene = NamedScene::named("field").unwrap().resized(24);
+        let scene = NamedScene::named("field").unwrap().resized(32);
         let world = scene.world().unwrap();
-        let converged = Reference::new(&scene, &world, 512, None).unwrap();
+        let converged = Reference::new(&scene, &world, 1024, None).unwrap();
         let rough = Reference::new(&scene, &world, 8, None).unwrap();
-        assert!(converged.error.absolute < rough.error.absolute / 25.0);
+        assert!(converged.error.absolute < rough.error.absolute / 50.0);
         let ratio = converged.squares(&rough.mean).absolute / rough.error.absolute;
         assert!((0.5..2.0).contains(&ratio), "{ratio}");
     }
