@@ -1,8 +1,11 @@
 //! Scenes of `scenes/` and its gallery: all render, and some have known images.
 
+use glam::DVec3;
 use spherule_render::render::{Options, Render, render};
-use spherule_render::scene::Scene;
-use spherule_render::scene::particles::{self, ReadOptions};
+use spherule_render::scene::particles::{
+    self, ParticleStyle, Particles, ReadOptions, TypeMaterial,
+};
+use spherule_render::scene::{Integrator, Preset, Rgb, Scene};
 use spherule_render::world::World;
 use std::path::{Path, PathBuf};
 
@@ -35,6 +38,38 @@ fn every_scene_renders_and_shows_something() {
         }
     }
     assert!(count >= 14, "{count} scenes");
+}
+
+#[test]
+fn every_preset_makes_a_world() {
+    for preset in Preset::ALL {
+        let mut scene = Scene::of_particles(Particles::default(), "");
+        scene.spheres.push(DVec3::new(3.0, 4.0, 5.0), 1.0, 0, Rgb::X);
+        scene.spheres.push(DVec3::new(3.0, 8.0, 5.0), 2.0, 0, Rgb::Y);
+        preset.replace_materials(&mut scene);
+        preset.set(&mut scene);
+        preset.light(&mut scene, DVec3::Y);
+        let world = World::build(&scene).expect("a world");
+        assert_eq!(world.ground.is_some(), preset == Preset::Studio);
+        let ao = matches!(scene.settings.integrator, Integrator::Ao { .. });
+        assert_eq!(ao, matches!(preset, Preset::Chalk | Preset::XRay));
+    }
+}
+
+#[test]
+fn every_material_of_types_is_one_of_the_scene() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("water.xyz");
+    std::fs::write(&path, "3\nwater\nO 0 0 0\nH 1 0 0\nH 0 1 0\n").expect("a file");
+    for (name, material) in TypeMaterial::ALL {
+        assert_eq!(material.name(), name);
+        let types = vec![format!("H:material={name}").parse().expect("a valid style")];
+        let style = ParticleStyle { types, ..ParticleStyle::default() };
+        let mut particles = particles::read(&path, &ReadOptions::default()).expect("particles");
+        style.apply(&path, &mut particles).expect("a style for water");
+        let scene = Scene::of_particles(particles, "water");
+        assert!(World::build(&scene).is_ok(), "{name}");
+    }
 }
 
 /// A background hides the sky and the suns behind a sphere, and nothing else: not their light, their images

@@ -1,15 +1,14 @@
-//! The renderer of Spherule: scenes, worlds, path tracing, films and image files.
+//! The renderer of Spherule: worlds, path tracing, films, and what is drawn over images.
 //!
 //! This is the implementation of the crate `spherule`, which has the public interface: use that. Anything here may
 //! change in any release. The modules, in the order of the data:
 //!
 //! ```text
-//! settings, color, sampling   vocabulary
-//! scene                       what users write
+//! sampling                    vocabulary
 //! world                       what kernels read
 //! trace, shade, integrator    one batch of paths
 //! film, noise, render         tiles, their error, and rounds over them
-//! layers, overlay, image      pictures and their files
+//! layers, overlay             pictures
 //! ```
 
 #![forbid(unsafe_code)]
@@ -25,13 +24,16 @@ pub use spherule_core::internals::{
 // Particle files, and what their readers share with scene files.
 pub use spherule_particles::internals::{memory, suggest};
 
+// What users write, and pictures.
+pub use spherule_image::{Image, atomic, color, image};
+#[cfg(feature = "drawing")]
+pub use spherule_image::{drawing, graphics};
+pub use spherule_scene::{Scene, scene, settings};
+
 // Vocabulary: knows nothing of scenes.
-pub mod color;
 pub mod sampling;
-pub mod settings;
 
 // The pipeline, in order.
-pub mod scene;
 pub mod world;
 
 pub mod trace;
@@ -49,16 +51,7 @@ pub mod prepared;
 pub mod render;
 pub mod split;
 
-#[cfg(feature = "drawing")]
-pub mod drawing;
-#[cfg(feature = "drawing")]
-pub mod graphics;
-
-pub mod atomic;
-pub mod image;
 mod sealed;
 
-pub use image::Image;
-pub use scene::Scene;
 pub use spherule_core::SphereTree;
 pub use world::World;

@@ -1,8 +1,8 @@
 //! Lights (emissive spheres, points and suns), and direct lighting.
 
+use super::Tracer;
 use super::random::{Cells, Random};
 use super::shape::{EPSILON, Ray, Sphere};
-use super::{Tracer, Unsupported};
 use glam::{DVec2, DVec3};
 use spherule_render::elementary::sin;
 use spherule_render::scene::{self, Scene};
@@ -34,14 +34,14 @@ struct Sample {
 }
 
 impl Light {
-    pub(super) fn all(scene: &Scene, spheres: &[Sphere]) -> Result<Vec<Self>, Unsupported> {
+    pub(super) fn all(scene: &Scene, spheres: &[Sphere]) -> Vec<Self> {
         let is_emitter = |row: &usize| spheres[*row].surface.emitted != DVec3::ZERO;
         let emitters = (0..spheres.len()).filter(is_emitter).map(Self::Sphere);
-        emitters.map(Ok).chain(scene.lights.iter().map(Self::new)).collect()
+        emitters.chain(scene.lights.iter().map(Self::new)).collect()
     }
 
-    fn new(light: &scene::Light) -> Result<Self, Unsupported> {
-        Ok(match *light {
+    fn new(light: &scene::Light) -> Self {
+        match *light {
             scene::Light::Point { position, intensity, falloff } => {
                 Self::Point { position, intensity: intensity.as_dvec3(), falloff }
             }
@@ -51,8 +51,7 @@ impl Light {
                 let radiance = irradiance.as_dvec3() / projected_angle;
                 Self::Sun { direction, radiance, height: 2.0 * sin(angle / 2.0).powi(2) }
             }
-            _ => return Err(Unsupported::Light),
-        })
+        }
     }
 
     /// Returns the radiance seen by a ray that hits nothing.

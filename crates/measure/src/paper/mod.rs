@@ -69,9 +69,6 @@ pub enum Unsupported {
         "the paper's tracer does not support material `{0}`; use lambertian, reflective, emitter or a smooth conductor of constant reflectance"
     )]
     Material(String),
-    /// The light is neither a point nor a sun.
-    #[error("the paper's tracer supports only points, suns and emissive spheres as lights")]
-    Light,
     /// The integrator is not `whitted`.
     #[error("the paper's tracer supports only integrator = \"whitted\"")]
     Integrator,
@@ -109,7 +106,7 @@ impl Tracer {
             surface: surfaces[ground.material as usize],
         });
         let hierarchy = hierarchy.then(|| Node::build(&spheres)).flatten();
-        let lights = Light::all(scene, &spheres)?;
+        let lights = Light::all(scene, &spheres);
         let environment = world.environment.clone();
         let (camera, transform) = (world.camera, world.transform);
         Ok(Self { spheres, hierarchy, ground, lights, environment, camera, transform })

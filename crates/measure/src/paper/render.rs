@@ -62,7 +62,7 @@ impl Plan {
         let survival = match settings.roulette {
             Roulette::None => 1.0,
             Roulette::Fixed(probability) => probability,
-            _ => return Err(Unsupported::Roulette),
+            Roulette::Throughput => return Err(Unsupported::Roulette),
         };
         let depth = settings.depth.filter(|depth| *depth <= Tracer::MAX_BOUNCES);
         let depth = depth.ok_or(Unsupported::Depth)?;

@@ -6,7 +6,7 @@ use super::{
 use crate::atomic::write_atomically;
 use crate::bvh::builders::Builder;
 use crate::bvh::{Bvh, NodeRow};
-use crate::scene::write::text_without_columns;
+use crate::scene::text_without_columns;
 use crate::scene::{EnvironmentMap, Identity, Scene};
 use crate::sealed::HashingWriter;
 use crate::shade::MaterialId;

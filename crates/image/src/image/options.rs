@@ -1,8 +1,8 @@
 //! Options for writing pictures.
 
 use super::tone::DisplayTransform;
+use super::tone::Tone;
 use super::{ImageError, Metadata};
-use crate::settings::Tone;
 
 /// Options of [`Image::write`](super::Image::write).
 ///
@@ -15,7 +15,7 @@ pub struct WriteOptions {
     pub quality: u8,
     /// Variant of PPM.
     pub ppm: PpmEncoding,
-    /// Exposure in stops, in [`Settings::EXPOSURES`](crate::settings::Settings::EXPOSURES): formats of
+    /// Exposure in stops, in [`EXPOSURES`](super::tone::EXPOSURES): formats of
     /// codes store the picture times 2 to this power.
     pub exposure: f64,
     /// Tone curve from exposed radiance to display-linear values, for formats of codes.

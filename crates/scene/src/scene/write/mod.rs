@@ -379,7 +379,7 @@ mod tests {
     #[test]
     fn environment_maps_survive() {
         let pixels = vec![[0.1, 1e-30, 3e8], [0.0, 1.0 / 3.0, 2.0]];
-        let image = Arc::new(crate::Image { width: 2, height: 1, pixels });
+        let image = Arc::new(crate::image::Image { width: 2, height: 1, pixels });
         let mut scene = default_scene(1);
         scene.settings.stop_given = true;
         scene.environment.map =

@@ -14,7 +14,6 @@ pub struct NamedMaterial {
 
 /// A material of surfaces. A sphere's own color is a factor on `color` (`albedo` for an emitter).
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub enum Material {
     /// Ideally diffuse.
     Lambertian {
@@ -87,7 +86,7 @@ impl Material {
     }
 
     /// Returns whether any body can have the material; glass and emitters are for spheres alone.
-    pub(crate) fn is_solid(&self) -> bool {
+    pub fn is_solid(&self) -> bool {
         !matches!(self, Self::Dielectric { .. } | Self::Emitter { .. })
     }
 
@@ -104,7 +103,6 @@ impl Material {
 
 /// Reflectance of a metal.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub enum ConductorFresnel {
     /// Reflectance at normal incidence, 0..=1, and Schlick's curve up to 1 at grazing angles.
     Schlick(Rgb),

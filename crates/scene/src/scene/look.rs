@@ -10,7 +10,7 @@ const INK: Rgb = Rgb::splat(0.02);
 const LIGHT_INK: Rgb = Rgb::splat(0.6);
 const DARK: f32 = 0.2;
 
-/// Overlays, drawn after rendering by [`crate::overlay`], and background; the default is none.
+/// Overlays, drawn after rendering by `overlay` of the renderer, and background; the default is none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Look {
     /// The backdrop, as camera rays see it; the scene's lighting does not change.
@@ -25,7 +25,6 @@ pub struct Look {
 
 /// The background that the camera sees.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[non_exhaustive]
 pub enum Background {
     /// The environment.
     #[default]

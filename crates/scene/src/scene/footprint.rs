@@ -2,7 +2,7 @@
 //!
 //! The columns of a scene are large, and so are those of its world: the peak memory of a render depends
 //! on which of them exist at the same time. The numbers here are bytes per sphere and follow
-//! [`World::build_taking`](crate::World::build_taking) step by step.
+//! `World::build_taking` step by step.
 
 use super::{Material, NamedMaterial, Rgb, Scene, SliceMode, Spheres};
 use std::collections::HashSet;
@@ -140,7 +140,7 @@ impl Footprint {
     }
 
     /// Returns the peak memory in bytes of scene and world, while
-    /// [`World::build_taking`](crate::World::build_taking) builds the world.
+    /// `World::build_taking` builds the world.
     pub fn peak(&self) -> u64 {
         self.peak_keeping(0)
     }
@@ -152,7 +152,7 @@ impl Footprint {
 
     /// Returns the peak memory in bytes of construction, if `kept` bytes of the scene's columns are not
     /// freed.
-    pub(crate) fn peak_keeping(&self, kept: u64) -> u64 {
+    pub fn peak_keeping(&self, kept: u64) -> u64 {
         let each = |bytes: u64| self.spheres.saturating_mul(bytes);
         let coded = if self.colors == ColorColumn::Coded { FLAG } else { 0 };
         let flags = if self.visible.is_some() { FLAG } else { 0 };

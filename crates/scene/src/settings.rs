@@ -10,6 +10,9 @@ pub use table::{
     INTEGRATORS, Kind, Names, Need, Role, SAMPLERS, SETTINGS, Scope, Setting, TONES, Value, manual,
 };
 
+pub use crate::image::tone::Tone;
+
+use crate::image::tone;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 use std::time::Duration;
@@ -51,7 +54,7 @@ pub struct Settings {
     pub exposure: f64,
     /// Tone curve, applied before the sRGB curve.
     pub tone: Tone,
-    /// Denoising of the finished picture, by the program: [`render()`](crate::render::render()) leaves pictures as they
+    /// Denoising of the finished picture, by the program: `render` leaves pictures as they
     /// are.
     pub denoise: Denoise,
     /// True if the user chose `spp`, `until_error` or `time`. If not, the program decides when a render stops.
@@ -72,7 +75,6 @@ pub enum Denoise {
 
 /// The rendering algorithm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub enum Integrator {
     /// Path tracing with next-event estimation and multiple importance sampling.
     Path,
@@ -91,7 +93,6 @@ pub enum Integrator {
 
 /// A generator of sample points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub enum SamplerKind {
     /// Owen-scrambled Sobol points.
     Sobol,
@@ -104,7 +105,6 @@ pub enum SamplerKind {
 /// The pixel reconstruction filter, applied by filter importance sampling: every sample has weight
 /// 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub enum Filter {
     /// The pixel's own square.
     Box,
@@ -116,7 +116,6 @@ pub enum Filter {
 
 /// Russian roulette.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub enum Roulette {
     /// Paths end by depth only.
     None,
@@ -129,7 +128,6 @@ pub enum Roulette {
 
 /// A strategy that selects the light of a direct lighting sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub enum LightChoice {
     /// By the estimated contribution of each light at the shading point, without occlusion.
     #[default]
@@ -138,16 +136,6 @@ pub enum LightChoice {
     Power,
     /// With equal probability.
     Uniform,
-}
-
-/// A tone curve, from linear radiance to display-linear 0..=1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[non_exhaustive]
-pub enum Tone {
-    /// Clips at 1.
-    Linear,
-    /// A filmic curve that compresses highlights.
-    Filmic,
 }
 
 /// A setting outside of its range.
@@ -194,7 +182,7 @@ impl Settings {
         Duration::from_millis(1)..=Duration::from_secs(1_000_000_000);
 
     /// Exposure in stops.
-    pub const EXPOSURES: RangeInclusive<f64> = -100.0..=100.0;
+    pub const EXPOSURES: RangeInclusive<f64> = tone::EXPOSURES;
 
     /// Checks that every value is in its range.
     ///

@@ -1,7 +1,7 @@
 //! Scenes: the user's description in double precision, validated, in the user's own units.
 //!
 //! A [`Scene`] comes from a [file](mod@file), from a [generator](generate), from a [particle
-//! file](particles) or from code; [`crate::World`] is built from it. Distances are in the scene's
+//! file](particles) or from code; a `World` is built from it. Distances are in the scene's
 //! own unit, angles in degrees, colors linear RGB with the primaries of sRGB. [`write`](write())
 //! puts a scene into files that load as the same scene.
 
@@ -38,8 +38,7 @@ pub use ellipsoids::Ellipsoids;
 pub use file::included_files;
 pub use footprint::{ColorColumn, Footprint};
 pub use identity::Identity;
-pub(crate) use light::is_radiance;
-pub use light::{BRIGHTEST, Environment, EnvironmentMap, Light};
+pub use light::{BRIGHTEST, Environment, EnvironmentMap, Light, is_radiance};
 pub use look::{Background, Look};
 pub use material::{ConductorFresnel, Ground, Material, NamedMaterial};
 pub use preset::Preset;

@@ -9,13 +9,12 @@ use std::sync::Arc;
 pub const BRIGHTEST: f32 = 1e30;
 
 /// Returns whether a value of a picture, finite and 0 or more, is a valid radiance after scaling.
-pub(crate) fn is_radiance(value: f32, scale: f32) -> bool {
+pub fn is_radiance(value: f32, scale: f32) -> bool {
     value >= 0.0 && value * scale <= BRIGHTEST
 }
 
 /// A light that is not a sphere of the scene.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub enum Light {
     /// A disc at infinity.
     Sun {
@@ -50,7 +49,6 @@ pub struct Environment {
 
 /// Radiance of the environment by direction.
 #[derive(Clone, Debug)]
-#[non_exhaustive]
 pub enum EnvironmentMap {
     /// The same everywhere; black for none.
     Constant(Rgb),

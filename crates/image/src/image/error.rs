@@ -1,8 +1,8 @@
 //! Errors of picture files.
 
 use super::Format;
+use super::tone::EXPOSURES;
 use crate::memory::Shortage;
-use crate::settings::Settings;
 use std::{
     io,
     path::{Path, PathBuf},
@@ -104,7 +104,7 @@ pub enum ImageError {
     #[error(
         "invalid exposure of {0} stops; give a number from {least} to {most}, 0 for \
          none",
-        least = Settings::EXPOSURES.start(), most = Settings::EXPOSURES.end()
+        least = EXPOSURES.start(), most = EXPOSURES.end()
     )]
     Exposure(f64),
     /// An entry of the metadata that files cannot store.

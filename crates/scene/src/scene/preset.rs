@@ -5,7 +5,7 @@
 //! angle, which needs no light samples, and at most one sun of tens of degrees. All lights are neutral:
 //! a matte surface has the hue of its color, and is nowhere brighter than its color, so that white
 //! spheres are darker than a white background, and colors can be compared with a color bar. Overlays of
-//! a look, such as contours, are drawn by [`crate::overlay`].
+//! a look, such as contours, are drawn by `overlay` of the renderer.
 
 use super::particles::{GHOST, Orientation, Particles};
 use super::{
@@ -305,7 +305,6 @@ fn ground(scene: &mut Scene, up: DVec3) -> Ground {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::World;
     use std::f64::consts::PI;
 
     fn scene() -> Scene {
@@ -313,20 +312,6 @@ mod tests {
         scene.spheres.push(DVec3::new(3.0, 4.0, 5.0), 1.0, 0, Rgb::X);
         scene.spheres.push(DVec3::new(3.0, 8.0, 5.0), 2.0, 0, Rgb::Y);
         scene
-    }
-
-    #[test]
-    fn every_preset_makes_a_world() {
-        for preset in Preset::ALL {
-            let mut scene = scene();
-            preset.replace_materials(&mut scene);
-            preset.set(&mut scene);
-            preset.light(&mut scene, DVec3::Y);
-            let world = World::build(&scene).unwrap();
-            assert_eq!(world.ground.is_some(), preset == Preset::Studio);
-            let ao = matches!(scene.settings.integrator, Integrator::Ao { .. });
-            assert_eq!(ao, matches!(preset, Preset::Chalk | Preset::XRay));
-        }
     }
 
     #[test]

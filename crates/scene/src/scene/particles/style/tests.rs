@@ -188,17 +188,6 @@ fn emitters_have_the_color_of_their_type() {
 }
 
 #[test]
-fn every_material_is_one_of_the_scene() {
-    for (name, material) in TypeMaterial::ALL {
-        assert_eq!(material.name(), name);
-        let style = typed(&[&format!("H:material={name}")]);
-        let (particles, _) = apply(WATER, &style).expect("a valid style");
-        let scene = Scene::of_particles(particles, "water");
-        assert!(crate::World::build(&scene).is_ok(), "{name}");
-    }
-}
-
-#[test]
 fn materials_named_by_files_are_those_of_types() {
     let made = "x,y,z,material,red,green,blue\n0,0,0,emitter,0,1,0\n1,0,0,GLASS,1,1,1\n\
                 2,0,0,oak,1,1,1\n3,0,0,,1,1,1\n";

@@ -121,7 +121,10 @@ impl Destination {
 }
 
 /// Resolves all symbolic links of a path, even if the last one points to no file yet.
-pub(crate) fn follow(path: &Path) -> io::Result<PathBuf> {
+///
+/// # Errors
+/// A folder cannot be read, or the links form a loop.
+pub fn follow(path: &Path) -> io::Result<PathBuf> {
     let mut path = path.to_owned();
     for _ in 0..MAXIMUM_LINKS {
         match fs::canonicalize(&path) {

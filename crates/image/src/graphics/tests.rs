@@ -1,7 +1,7 @@
 use super::*;
 use crate::image::tone::DisplayTransform;
+use crate::image::tone::Tone;
 use crate::image::{Format as ImageFormat, Image, Metadata, WriteOptions};
-use crate::settings::Tone;
 
 const INK: Rgb = Rgb::ZERO;
 

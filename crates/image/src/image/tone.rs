@@ -6,8 +6,22 @@
 
 use super::{Depth, ImageError, WriteOptions};
 use crate::elementary::{exp2, pow};
-use crate::settings::{Settings, Tone};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
+
+/// Exposures in stops.
+pub const EXPOSURES: RangeInclusive<f64> = -100.0..=100.0;
+
+/// A tone curve, from linear radiance to display-linear 0..=1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum Tone {
+    /// Clips at 1.
+    Linear,
+    /// A filmic curve that compresses highlights.
+    Filmic,
+}
 
 /// Returns the sRGB code, 0..=1, of a display-linear value in 0..=1 (IEC 61966-2-1:1999).
 ///
@@ -44,9 +58,9 @@ impl DisplayTransform {
     /// is in stops.
     ///
     /// # Errors
-    /// [`ImageError::Exposure`] outside of [`Settings::EXPOSURES`].
+    /// [`ImageError::Exposure`] outside of [`EXPOSURES`].
     pub fn new(exposure: f64, tone: Tone) -> Result<Self, ImageError> {
-        if Settings::EXPOSURES.contains(&exposure) {
+        if EXPOSURES.contains(&exposure) {
             Ok(Self { gain: exp2(exposure), tone })
         } else {
             Err(ImageError::Exposure(exposure))
@@ -55,7 +69,7 @@ impl DisplayTransform {
 
     /// Returns the transform of the nearest exposure in range; NaN counts as 0.
     pub fn nearest(exposure: f64, tone: Tone) -> Self {
-        let (least, most) = (*Settings::EXPOSURES.start(), *Settings::EXPOSURES.end());
+        let (least, most) = (*EXPOSURES.start(), *EXPOSURES.end());
         let exposure = if exposure.is_nan() { 0.0 } else { exposure.clamp(least, most) };
         Self { gain: exp2(exposure), tone }
     }
