@@ -13,12 +13,14 @@ use ::tiff::encoder::compression::DeflateLevel;
 use ::tiff::encoder::{Compression, Predictor, TiffEncoder, TiffKind, TiffValue, colortype};
 use ::tiff::tags::{ExtraSamples, Tag};
 use ::tiff::{TiffError, TiffResult};
-use image::codecs::jpeg::{JpegDecoder, JpegEncoder};
 use image::codecs::tiff::TiffDecoder;
-use image::codecs::webp::WebPDecoder;
-use image::{ColorType, ExtendedColorType, ImageDecoder, ImageResult, Limits};
-use image_webp::WebPEncoder;
+use image::{ColorType, ImageDecoder, Limits};
+use image_webp::{WebPDecoder, WebPEncoder};
+use jpeg_encoder::{ColorType::Rgb, Encoder as JpegEncoder, SamplingFactor};
 use std::io::{Cursor, Write};
+use zune_jpeg::JpegDecoder;
+use zune_jpeg::zune_core::bytestream::ZCursor;
+use zune_jpeg::zune_core::options::DecoderOptions;
 
 /// Peak bytes per pixel while it is decoded: its samples twice, and three floats.
 const PIXEL_BYTES: u64 = 16 + 16 + 12;
@@ -45,27 +47,46 @@ pub(super) fn decode_jpeg(bytes: &[u8]) -> Result<Image, String> {
     if last([0xFF, 0xD9]) < last([0xFF, 0xDA]) {
         return Err("its end is missing; the file is cut off: save it again".into());
     }
-    decode(JpegDecoder::new(Cursor::new(bytes)))
-}
-
-pub(super) fn decode_tiff(bytes: &[u8]) -> Result<Image, String> {
-    decode(TiffDecoder::new(Cursor::new(bytes)))
+    let mut decoder = open_jpeg(bytes)?;
+    let (width, height) = decoder.dimensions().unwrap_or_default();
+    let area = claimed_area(width as u64, height as u64, PIXEL_BYTES)?;
+    let mut samples = vec![0_u8; area * 3];
+    decoder.decode_into(&mut samples).map_err(|error| damaged(&error))?;
+    let pixels = codes::decode(&samples, 3, Depth::Eight);
+    Ok(Image { width: width as u32, height: height as u32, pixels })
 }
 
 pub(super) fn decode_webp(bytes: &[u8]) -> Result<Image, String> {
-    decode(WebPDecoder::new(Cursor::new(bytes)))
+    let mut decoder = WebPDecoder::new(Cursor::new(bytes)).map_err(|error| damaged(&error))?;
+    let (width, height) = decoder.dimensions();
+    let area = claimed_area(width.into(), height.into(), PIXEL_BYTES)?;
+    let channels = if decoder.has_alpha() { 4 } else { 3 };
+    let mut samples = vec![0_u8; area * channels];
+    decoder.read_image(&mut samples).map_err(|error| damaged(&error))?;
+    Ok(Image { width, height, pixels: codes::decode(&samples, channels, Depth::Eight) })
 }
 
 pub(super) fn jpeg_metadata(bytes: &[u8]) -> Result<Metadata, String> {
-    metadata(JpegDecoder::new(Cursor::new(bytes)))
+    let decoder = open_jpeg(bytes)?;
+    Ok(xmp::metadata(decoder.xmp().map_or(&[], Vec::as_slice)))
+}
+
+/// Reads the headers of a JPEG file. Its samples are red, green and blue, whatever they are in the file.
+fn open_jpeg(bytes: &[u8]) -> Result<JpegDecoder<ZCursor<&[u8]>>, String> {
+    let options = DecoderOptions::default().set_strict_mode(false);
+    let options = options.set_max_width(usize::MAX).set_max_height(usize::MAX);
+    let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
+    decoder.decode_headers().map_err(|error| damaged(&error))?;
+    Ok(decoder)
 }
 
 pub(super) fn tiff_metadata(bytes: &[u8]) -> Result<Metadata, String> {
-    metadata(TiffDecoder::new(Cursor::new(bytes)))
+    let packet = TiffDecoder::new(Cursor::new(bytes)).and_then(|mut file| file.xmp_metadata());
+    Ok(xmp::metadata(&packet.map_err(|error| damaged(&error))?.unwrap_or_default()))
 }
 
 pub(super) fn webp_metadata(bytes: &[u8]) -> Result<Metadata, String> {
-    let packet = image_webp::WebPDecoder::new(Cursor::new(bytes)).and_then(|mut decoder| {
+    let packet = WebPDecoder::new(Cursor::new(bytes)).and_then(|mut decoder| {
         // A length that the file only claims takes no memory.
         decoder.set_memory_limit(bytes.len());
         decoder.xmp_metadata()
@@ -73,14 +94,9 @@ pub(super) fn webp_metadata(bytes: &[u8]) -> Result<Metadata, String> {
     Ok(xmp::metadata(&packet.map_err(|error| damaged(&error))?.unwrap_or_default()))
 }
 
-fn metadata(decoder: ImageResult<impl ImageDecoder>) -> Result<Metadata, String> {
-    let packet = decoder.and_then(|mut decoder| decoder.xmp_metadata());
-    Ok(xmp::metadata(&packet.map_err(|error| damaged(&error))?.unwrap_or_default()))
-}
-
 /// Decodes the first picture: codes by the sRGB curve, floats unchanged. Alpha is dropped.
-fn decode(decoder: ImageResult<impl ImageDecoder>) -> Result<Image, String> {
-    let mut decoder = decoder.map_err(|error| damaged(&error))?;
+pub(super) fn decode_tiff(bytes: &[u8]) -> Result<Image, String> {
+    let mut decoder = TiffDecoder::new(Cursor::new(bytes)).map_err(|error| damaged(&error))?;
     let (width, height) = decoder.dimensions();
     let area = claimed_area(width.into(), height.into(), PIXEL_BYTES)?;
     let mut limits = Limits::no_limits();
@@ -111,35 +127,35 @@ fn decode(decoder: ImageResult<impl ImageDecoder>) -> Result<Image, String> {
     Ok(Image { width, height, pixels })
 }
 
-/// Encodes a picture as JPEG.
+/// Encodes a picture as JPEG, with a color for each pixel.
 pub(super) fn encode_jpeg(image: &Image, options: &WriteOptions) -> Result<Vec<u8>, String> {
-    let codes = eight_bits(image, None, options);
+    let side = |side: u32| {
+        let most = u16::MAX;
+        side.try_into().map_err(|_| format!("{side} is more than {most} pixels on a side"))
+    };
+    let (width, height) = (side(image.width)?, side(image.height)?);
     let mut bytes = Vec::new();
-    JpegEncoder::new_with_quality(&mut bytes, options.quality)
-        .encode(&codes, image.width, image.height, ExtendedColorType::Rgb8)
-        .map_err(|error| error.to_string())?;
-    insert_xmp(&mut bytes, &options.metadata);
+    let mut encoder = JpegEncoder::new(&mut bytes, options.quality);
+    encoder.set_sampling_factor(SamplingFactor::F_1_1);
+    if let Some(segment) = xmp_segment(&options.metadata) {
+        encoder.add_app_segment(1, segment).map_err(|error| error.to_string())?;
+    }
+    let codes = eight_bits(image, None, options);
+    encoder.encode(&codes, width, height, Rgb).map_err(|error| error.to_string())?;
     Ok(bytes)
 }
 
-/// Inserts the metadata after the first segment of a JPEG file, which must stay the first; as many of
-/// its first entries as fit into a segment.
-fn insert_xmp(bytes: &mut Vec<u8>, metadata: &Metadata) {
-    let mut packet = xmp::packet(metadata);
+/// Returns the segment of the metadata: as many of its first entries as fit into one.
+fn xmp_segment(metadata: &Metadata) -> Option<Vec<u8>> {
     let mut entries: Vec<_> = metadata.iter().collect();
-    while XMP_SEGMENT.len() + packet.len() > MAX_SEGMENT {
-        entries.pop();
+    loop {
         let fewer = entries.iter().map(|&(key, value)| (key.to_owned(), value.to_owned()));
-        packet = xmp::packet(&fewer.collect());
+        let packet = xmp::packet(&fewer.collect());
+        if XMP_SEGMENT.len() + packet.len() <= MAX_SEGMENT {
+            return (!packet.is_empty()).then(|| [XMP_SEGMENT, &packet].concat());
+        }
+        entries.pop();
     }
-    let [_, _, 0xFF, 0xE0, high, low, ..] = bytes[..] else { return };
-    if packet.is_empty() {
-        return;
-    }
-    let at = 4 + usize::from(u16::from_be_bytes([high, low]));
-    let length = (2 + XMP_SEGMENT.len() + packet.len()) as u16;
-    let segment = [&[0xFF, 0xE1][..], &length.to_be_bytes(), XMP_SEGMENT, &packet].concat();
-    bytes.splice(at..at, segment);
 }
 
 /// Encodes a picture as TIFF, compressed by Deflate.
