@@ -1,6 +1,6 @@
 //! Synonyms of column names in common programs.
 
-use super::options::Role;
+use super::role::Role;
 
 /// Groups of synonyms in PDB, GRO, mmCIF, LAMMPS and extended XYZ files, and in `MDAnalysis`, VMD,
 /// `PyMOL` and OVITO. If a file has no column of the requested name, the first synonym in the file is

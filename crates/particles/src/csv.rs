@@ -1,10 +1,11 @@
 //! Reads CSV with a header.
 
 use super::builder::Builder;
+use super::format::Format;
 use super::frame::ParticleFrame;
 use super::frame_reader::FrameReader;
 use super::lines::{LONGEST, Line, Lines};
-use super::options::{Format, ReadOptions};
+use super::options::ReadOptions;
 use super::record::{Record, header_names, separator};
 use super::schema::{Schema, Slot};
 use super::source::Source;

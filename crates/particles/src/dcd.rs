@@ -5,9 +5,10 @@
 use super::binary::{BinaryFile, Numbers};
 use super::builder::Builder;
 use super::cell::Cell;
+use super::format::Format;
 use super::frame::{LengthUnit, ParticleFrame};
 use super::frame_reader::FrameReader;
-use super::options::{Format, ReadOptions};
+use super::options::ReadOptions;
 use super::scalar::{Order, Scalar};
 use super::schema::Schema;
 use super::source::Source;

@@ -4,11 +4,12 @@
 use super::builder::Builder;
 use super::categories::Kind;
 use super::cell::Cell;
+use super::format::Format;
 use super::frame::{LengthUnit, ParticleFrame};
 use super::frame_reader::FrameReader;
 use super::lines::{Line, Lines};
 use super::naming;
-use super::options::{Format, ReadOptions};
+use super::options::ReadOptions;
 use super::schema::{Naming, Schema, Slot};
 use super::{number, source::Source};
 use crate::FileError;

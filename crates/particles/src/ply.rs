@@ -5,10 +5,11 @@
 
 use super::builder::Builder;
 use super::fields::Fields;
+use super::format::Format;
 use super::frame::ParticleFrame;
 use super::frame_reader::FrameReader;
 use super::lines::{Line, Lines};
-use super::options::{Format, ReadOptions};
+use super::options::ReadOptions;
 use super::scalar::{Order, Scalar};
 use super::schema::{Schema, Slot};
 use super::source::Source;

@@ -3,11 +3,12 @@
 
 use super::builder::Builder;
 use super::fields::Fields;
+use super::format::Format;
 use super::frame::{LengthUnit, ParticleFrame};
 use super::frame_reader::FrameReader;
 use super::lines::{Line, Lines};
 use super::number;
-use super::options::{Format, ReadOptions};
+use super::options::ReadOptions;
 use super::schema::{Naming, Schema, Slot};
 use super::source::Source;
 use crate::FileError;

@@ -2,14 +2,16 @@
 
 use super::bonds::BondSource;
 use super::derived::Derived;
+use super::format::Format;
 use super::frame::ParticleFrame;
 use super::frame_reader::FrameReader;
-use super::options::{Format, FrameChoice, ReadOptions};
+use super::ids;
+use super::options::{FrameChoice, ReadOptions};
 use super::shapes::ShapeColumns;
 use super::smoothing::Window;
 use super::source::{Source, is_standard_input};
 use super::superposition::{AlignBy, Reference};
-use super::topology::{self, Joined};
+use super::topology::Joined;
 use super::trails::History;
 use super::{
     cfg, cif, csv, dcd, gro, gromacs, gsd, hdf5, lammps, mol2, molfile, netcdf, numpy, pdb, ply,
@@ -61,7 +63,7 @@ impl Frames {
         let columns = inner.columns.clone();
         if options.smooth > 0 || options.trail > 0 {
             // Rows of LAMMPS files are sorted by them.
-            inner.columns.wanted.push(topology::ID.to_owned());
+            inner.columns.wanted.push(ids::ID.to_owned());
         }
         let shapes = ShapeColumns::ask(&mut inner);
         let reader: Box<dyn FrameReader> = match &inner.topology {
@@ -96,7 +98,7 @@ impl Frames {
         };
         let Some(mut frame) = next else { return Ok(None) };
         if self.trails.is_some() && self.smoothing.is_none() {
-            topology::sort(&mut frame);
+            ids::sort(&mut frame);
         }
         if frame.format.lacks_names() && frame.kinds.codes.is_empty() && !frame.is_empty() {
             let warning =

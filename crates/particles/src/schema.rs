@@ -2,7 +2,8 @@
 
 use super::aliases;
 use super::frame::LengthUnit;
-use super::options::{Radii, ReadOptions, Role};
+use super::options::{Radii, ReadOptions};
+use super::role::Role;
 use super::units;
 use crate::suggest;
 use std::collections::HashSet;

@@ -1,20 +1,11 @@
 //! Shapes of particles: ellipsoids and their orientations, from columns of files.
 
-use super::frame::ParticleFrame;
+use super::format::Format;
+use super::frame::{ParticleFrame, Shapes};
 use super::memory;
-use super::options::{Columns, Format, Radii, ReadOptions, Role};
-use crate::categories::{pick, retain};
+use super::options::{Columns, Radii, ReadOptions};
+use super::role::Role;
 use glam::{DQuat, DVec3};
-
-/// Particles that are ellipsoids, in columns. Row `i` of every column belongs to particle `i`.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Shapes {
-    /// Semi-axes along the particle's own x, y and z, relative to its radius: the longest is 1, and all three are where
-    /// it is a sphere. Empty if all particles are spheres.
-    pub semi_axes: Vec<DVec3>,
-    /// Rotations of the particle's axes to those of the file, unit quaternions. Empty if no particle is turned.
-    pub orientation: Vec<DQuat>,
-}
 
 /// Names of columns of semi-axes.
 pub(crate) const SEMI_AXES: [&str; 3] = ["semi_axes_x", "semi_axes_y", "semi_axes_z"];
@@ -56,53 +47,6 @@ enum Last {
     Always,
     /// As OVITO writes text files, unlike HOOMD-blue and its tools, which write binary ones.
     InText,
-}
-
-impl Shapes {
-    /// Returns whether all particles are spheres.
-    pub fn is_empty(&self) -> bool {
-        self.semi_axes.is_empty()
-    }
-
-    /// Returns whether particle `row` is a sphere. It must be less than the number of particles.
-    pub fn is_sphere(&self, row: usize) -> bool {
-        self.semi_axes.get(row).is_none_or(|axes| *axes == DVec3::ONE)
-    }
-
-    /// Returns the rotation of particle `row`, which must be less than the number of particles.
-    pub fn orientation_of(&self, row: usize) -> DQuat {
-        self.orientation.get(row).copied().unwrap_or(DQuat::IDENTITY)
-    }
-
-    /// Keeps the rows for which `keep` is true.
-    pub fn retain(&mut self, keep: &[bool]) {
-        retain(&mut self.semi_axes, keep);
-        retain(&mut self.orientation, keep);
-    }
-
-    /// Turns all particles.
-    pub(crate) fn rotate(&mut self, rotation: DQuat) {
-        if self.orientation.is_empty() {
-            self.orientation = vec![DQuat::IDENTITY; self.semi_axes.len()];
-        }
-        self.orientation.iter_mut().for_each(|own| *own = (rotation * *own).normalize());
-    }
-
-    /// Repeats all rows, `count` times in all.
-    pub fn repeat(&mut self, count: usize) {
-        self.semi_axes = self.semi_axes.repeat(count);
-        self.orientation = self.orientation.repeat(count);
-    }
-
-    pub(crate) fn shrink(&mut self) {
-        self.semi_axes.shrink_to_fit();
-        self.orientation.shrink_to_fit();
-    }
-
-    pub(crate) fn pick(&mut self, rows: &[u32]) {
-        pick(&mut self.semi_axes, rows);
-        pick(&mut self.orientation, rows);
-    }
 }
 
 /// The columns of shapes that are read in addition to those that were asked for.

@@ -2,24 +2,12 @@
 
 use super::frame::ParticleFrame;
 use super::frame_reader::FrameReader;
-use super::topology;
+use super::ids;
 use crate::FileError;
-use crate::bonds;
-use crate::cell::Cell;
+use crate::bonds::nearest_image;
 use glam::DVec3;
 use std::collections::VecDeque;
 use std::path::Path;
-
-/// Returns the nearest periodic image of a vector.
-pub(crate) fn nearest_image(vector: DVec3, cell: Option<&Cell>) -> DVec3 {
-    match cell {
-        Some(cell) if vector.is_finite() => {
-            let edges = bonds::nearest(vector, cell).map(|edge| edge as f64);
-            vector + cell.matrix() * DVec3::from(edges)
-        }
-        _ => vector,
-    }
-}
 
 /// Frames around the next one.
 pub(crate) struct Window {
@@ -47,7 +35,7 @@ impl Window {
         while !self.ended && self.frames.len() <= self.center + self.half {
             match reader.next() {
                 Ok(Some(mut frame)) => {
-                    topology::sort(&mut frame);
+                    ids::sort(&mut frame);
                     self.frames.push_back(frame);
                 }
                 Ok(None) => self.ended = true,

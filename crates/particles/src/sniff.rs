@@ -2,7 +2,9 @@
 
 use super::fields::Fields;
 use super::foreign::{self, Foreign};
-use super::options::{Format, ReadOptions, Role};
+use super::format::Format;
+use super::options::ReadOptions;
+use super::role::Role;
 use super::source::Source;
 use super::{
     cfg, cif, dcd, gro, gromacs, gsd, hdf5, header, line, mol2, molfile, netcdf, number, numpy,

@@ -2,10 +2,12 @@
 
 use super::builder::Builder;
 use super::fields::Fields;
+use super::format::Format;
 use super::frame::ParticleFrame;
 use super::frame_reader::FrameReader;
 use super::lines::{Line, Lines};
-use super::options::{Format, ReadOptions, Role};
+use super::options::ReadOptions;
+use super::role::Role;
 use super::schema::Schema;
 use super::{header, line, number, source::Source, units};
 use crate::FileError;

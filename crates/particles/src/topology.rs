@@ -5,17 +5,16 @@ use super::bonds::{BondSource, Bonds};
 use super::error::clipped;
 use super::frame::ParticleFrame;
 use super::frame_reader::FrameReader;
-use super::options::{Columns, Format, Radii, ReadOptions, Role};
+use super::ids::{self, ID, is_id};
+use super::options::{Columns, Radii, ReadOptions};
 use super::reader;
+use super::role::Role;
 use super::schema::unknown_column;
 use crate::FileError;
 use std::path::{Path, PathBuf};
 
 /// Columns that change from frame to frame, besides positions.
 const VARYING: [&str; 9] = ["vx", "vy", "vz", "fx", "fy", "fz", "xu", "yu", "zu"];
-
-/// Name of the column of numbers of particles, as `aliases` knows it.
-pub(crate) const ID: &str = "id";
 
 /// Reader of a trajectory together with its topology.
 pub(crate) struct Joined {
@@ -42,28 +41,6 @@ fn is_position(name: &str) -> bool {
     let axes = [Role::X, Role::Y, Role::Z];
     let mut names = aliases::USUAL.iter().filter(|(role, _)| axes.contains(role));
     names.any(|(_, names)| names.iter().any(|own| own.eq_ignore_ascii_case(name)))
-}
-
-/// Returns whether rows of this format come in any order, and have numbers.
-fn is_unordered(format: Format) -> bool {
-    matches!(format, Format::LammpsData | Format::LammpsDump)
-}
-
-/// Returns whether a column has numbers of particles.
-fn is_id(name: &str) -> bool {
-    name == ID || aliases::of(name).any(|other| other == ID)
-}
-
-/// Sorts the rows of a frame by their numbers, if they come in any order.
-pub(crate) fn sort(frame: &mut ParticleFrame) {
-    if !is_unordered(frame.format) {
-        return;
-    }
-    if let Some(ids) = frame.numbers.iter().find(|column| is_id(&column.name)) {
-        let mut rows: Vec<u32> = (0..frame.len() as u32).collect();
-        rows.sort_by(|&a, &b| ids.values[a as usize].total_cmp(&ids.values[b as usize]));
-        frame.pick(&rows);
-    }
 }
 
 impl Joined {
@@ -124,7 +101,7 @@ impl Joined {
         let Some(mut particles) = frames.next()? else {
             return Err(FileError::whole_file(&self.topology, "holds no particles"));
         };
-        sort(&mut particles);
+        ids::sort(&mut particles);
         // Only the columns are needed from here on.
         let is_kept = |name: &str| !varies(name) && (self.has_ids || !is_id(name));
         particles.numbers.retain(|column| is_kept(&column.name));
@@ -148,7 +125,7 @@ impl Joined {
                 self.topology.display()
             )));
         }
-        sort(frame);
+        ids::sort(frame);
         if !particles.kinds.codes.is_empty() {
             frame.kinds.clone_from(&particles.kinds);
         }

@@ -1,58 +1,12 @@
 //! Trails of trajectories: where particles were in the frames before.
 
-use super::frame::ParticleFrame;
+use super::bonds::nearest_image;
+use super::frame::{ParticleFrame, Trails};
 use super::memory;
-use super::smoothing::nearest_image;
 use crate::FileError;
-use crate::categories::{pick, retain};
 use glam::DVec3;
 use std::collections::VecDeque;
 use std::path::Path;
-
-/// Earlier positions of particles, as vectors from where they are now. They don't cross the periodic cell: each is the nearest
-/// periodic image of the position to the one after it.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Trails {
-    /// One step per earlier frame, the last one first: columns x, y and z, with one row per particle.
-    pub steps: Vec<[Vec<f64>; 3]>,
-}
-
-impl Trails {
-    /// Returns whether there are no earlier positions.
-    pub fn is_empty(&self) -> bool {
-        self.steps.is_empty()
-    }
-
-    /// Returns the vectors from particle `row` to its earlier positions, the last one first. It must be less than the number of
-    /// particles.
-    pub fn of(&self, row: usize) -> impl Iterator<Item = DVec3> + '_ {
-        self.steps.iter().map(move |[x, y, z]| DVec3::new(x[row], y[row], z[row]))
-    }
-
-    /// Keeps the rows for which `keep` is true.
-    pub fn retain(&mut self, keep: &[bool]) {
-        self.columns().for_each(|column| retain(column, keep));
-    }
-
-    /// Repeats all rows, `count` times in total.
-    pub fn repeat(&mut self, count: usize) {
-        self.columns().for_each(|column| *column = column.repeat(count));
-    }
-
-    /// Multiplies all vectors by a factor.
-    pub fn scale(&mut self, factor: f64) {
-        self.columns().flatten().for_each(|value| *value *= factor);
-    }
-
-    /// Gathers rows: row `i` becomes the former row `rows[i]`.
-    pub(crate) fn pick(&mut self, rows: &[u32]) {
-        self.columns().for_each(|column| pick(column, rows));
-    }
-
-    fn columns(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
-        self.steps.iter_mut().flatten()
-    }
-}
 
 /// Positions in the last frames.
 pub(crate) struct History {

@@ -2,11 +2,12 @@
 
 use super::builder::Builder;
 use super::cell::Cell;
+use super::format::Format;
 use super::frame::{LengthUnit, ParticleFrame};
 use super::frame_reader::FrameReader;
 use super::lines::Lines;
 use super::number;
-use super::options::{Format, ReadOptions};
+use super::options::ReadOptions;
 use super::schema::Schema;
 use super::source::Source;
 use crate::FileError;

@@ -6,10 +6,12 @@
 
 use super::builder::Builder;
 use super::cell::Cell;
+use super::format::Format;
 use super::frame::{LengthUnit, ParticleFrame};
 use super::frame_reader::FrameReader;
 use super::lines::{Line, Lines};
-use super::options::{Format, ReadOptions, Role, component_names};
+use super::options::{ReadOptions, component_names};
+use super::role::Role;
 use super::schema::{Naming, Schema};
 use super::{number, source::Source};
 use crate::FileError;

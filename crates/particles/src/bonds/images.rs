@@ -16,7 +16,7 @@ pub(super) fn narrow(shift: [i64; 3]) -> Option<[i8; 3]> {
 /// Returns the number of edges to add to `away`, a vector between two particles, to make it the shortest
 /// one. The rounded fractional coordinates are the answer of orthogonal cells; in a skewed cell one of
 /// the adjacent images may be nearer.
-pub(crate) fn nearest(away: DVec3, cell: &Cell) -> [i64; 3] {
+fn nearest(away: DVec3, cell: &Cell) -> [i64; 3] {
     let fractional = cell.matrix().inverse() * away;
     let edge = |axis: usize| if cell.periodic[axis] { -fractional[axis].round() } else { 0.0 };
     let start = [edge(0), edge(1), edge(2)];
@@ -45,6 +45,17 @@ pub(crate) fn nearest(away: DVec3, cell: &Cell) -> [i64; 3] {
         }
     }
     best.map(|edge| edge as i64)
+}
+
+/// Returns the nearest periodic image of a vector.
+pub(crate) fn nearest_image(vector: DVec3, cell: Option<&Cell>) -> DVec3 {
+    match cell {
+        Some(cell) if vector.is_finite() => {
+            let edges = nearest(vector, cell).map(|edge| edge as f64);
+            vector + cell.matrix() * DVec3::from(edges)
+        }
+        _ => vector,
+    }
 }
 
 impl Bonds {

@@ -4,9 +4,10 @@
 use crate::FileError;
 use crate::binary::{BinaryFile, Numbers};
 use crate::builder::Builder;
+use crate::format::Format;
 use crate::frame::{LengthUnit, ParticleFrame};
 use crate::frame_reader::FrameReader;
-use crate::options::{Format, ReadOptions};
+use crate::options::ReadOptions;
 use crate::scalar::{Order, Scalar};
 use crate::schema::Schema;
 use crate::source::Source;

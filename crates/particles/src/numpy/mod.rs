@@ -12,9 +12,11 @@ pub(super) use archive::Npz;
 
 use self::array::{Array, Transpose};
 use super::builder::Builder;
+use super::format::Format;
 use super::frame::ParticleFrame;
 use super::frame_reader::FrameReader;
-use super::options::{Format, ReadOptions, Role};
+use super::options::ReadOptions;
+use super::role::Role;
 use super::schema::{Schema, Slot};
 use super::source::Source;
 use crate::FileError;

@@ -1,9 +1,11 @@
 //! Features of the picture's own camera rays, which the denoiser predicts radiance from.
 
 use super::{Film, Tile};
-use crate::layers::SAMPLES;
 use rayon::prelude::*;
 use std::ops::Range;
+
+/// Maximum number of samples of a pixel for features and layers: an edge then has 256 levels.
+pub const SAMPLES: u32 = 256;
 
 /// Place of the last bit of a sum: sums of [`SAMPLES`] numbers up to 1 fit.
 const UNIT: f32 = 1.0 / (1 << 22) as f32;

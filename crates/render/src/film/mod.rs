@@ -14,6 +14,7 @@ mod tile;
 
 pub use chance::{ChanceLight, ChanceVariance, Term};
 pub use exact::ExactSums;
+pub use features::SAMPLES;
 pub(crate) use features::{FeatureSums, MeanFeatures, SampleSet, TileFeatures};
 pub use probes::{Density, Pilot, ProbePair, Probes, Reading, Role};
 pub(crate) use saved::TileHeader;

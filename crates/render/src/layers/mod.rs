@@ -9,6 +9,7 @@ mod sums;
 
 pub use self::progressive::ProgressiveLayers;
 use self::progressive::TileLayers;
+pub use crate::film::SAMPLES;
 use crate::film::{Film, Region};
 use crate::image::{Channel, Values};
 use crate::integrator::Job;
@@ -23,9 +24,6 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::mem::take;
 use std::ops::Range;
-
-/// Maximum number of samples of a pixel for layers: an edge then has 256 levels.
-pub const SAMPLES: u32 = 256;
 
 /// The id of a pixel whose center shows no surface.
 pub const NOTHING: u32 = MISS;

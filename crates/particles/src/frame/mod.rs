@@ -1,13 +1,19 @@
 //! A frame of particles, in columns.
 
-use super::categories::{Kinds, TextColumn, pick};
-use super::options::{Format, Role};
+mod bonds;
+mod shapes;
+mod trails;
+
+pub use bonds::Bonds;
+pub(crate) use bonds::{Bond, ordered};
+pub use shapes::Shapes;
+pub use trails::Trails;
+
 use crate::Rgb;
-use crate::bonds::Bonds;
-use crate::categories::retain;
+use crate::categories::{Kinds, TextColumn, pick, retain};
 use crate::cell::Cell;
-use crate::shapes::Shapes;
-use crate::trails::Trails;
+use crate::format::Format;
+use crate::role::Role;
 use glam::{DMat3, DVec3};
 
 /// The particles of one frame, with the frame's metadata. Row `i` of every column belongs to
