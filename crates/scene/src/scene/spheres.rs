@@ -82,8 +82,8 @@ impl Spheres {
         let row = |material: u32| rows.get(material as usize).copied().unwrap_or(0);
         let (before, added) = (self.len(), other.len());
         other.material.iter_mut().for_each(|material| *material = row(*material));
-        append_usual(&mut self.material, before, take(&mut other.material), (added, row(0)), 0);
-        append_usual(&mut self.color, before, take(&mut other.color), (added, Rgb::ONE), Rgb::ONE);
+        append_usual(&mut self.material, before, take(&mut other.material), added, row(0), 0);
+        append_usual(&mut self.color, before, take(&mut other.color), added, Rgb::ONE, Rgb::ONE);
         append_or_take(&mut self.x, other.x);
         append_or_take(&mut self.y, other.y);
         append_or_take(&mut self.z, other.z);
@@ -130,7 +130,8 @@ fn append_usual<T: Copy + PartialEq>(
     column: &mut Vec<T>,
     before: usize,
     other: Vec<T>,
-    (count, value): (usize, T),
+    count: usize,
+    value: T,
     usual: T,
 ) {
     if other.is_empty() {

@@ -8,7 +8,8 @@ use crate::scene::{Cones, FileError, Rgb};
 
 pub(super) fn read(
     root: &Block,
-    (cones, materials): (&mut Cones, &mut Materials),
+    cones: &mut Cones,
+    materials: &mut Materials,
 ) -> Result<(), FileError> {
     for block in root.blocks("cone", &schema::CONE)? {
         let apex = block.need("apex", "apex = [x, y, z]")?.point()?;

@@ -9,7 +9,8 @@ use glam::{DQuat, DVec3};
 
 pub(super) fn read(
     root: &Block,
-    (ellipsoids, materials): (&mut Ellipsoids, &mut Materials),
+    ellipsoids: &mut Ellipsoids,
+    materials: &mut Materials,
 ) -> Result<(), FileError> {
     for block in root.blocks("ellipsoid", &schema::ELLIPSOID)? {
         let center = block.need("center", "center = [x, y, z]")?.point()?;

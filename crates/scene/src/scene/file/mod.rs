@@ -209,10 +209,10 @@ fn read(source: &Source, root: &Block) -> Result<Scene, FileError> {
         ..Scene::default()
     };
     let mut materials = materials::read(root)?;
-    spheres::read(source, root, (&mut scene, &mut materials))?;
-    sticks::read(root, (&mut scene.sticks, &mut materials))?;
-    ellipsoids::read(root, (&mut scene.ellipsoids, &mut materials))?;
-    cones::read(root, (&mut scene.cones, &mut materials))?;
+    spheres::read(source, root, &mut scene, &mut materials)?;
+    sticks::read(root, &mut scene.sticks, &mut materials)?;
+    ellipsoids::read(root, &mut scene.ellipsoids, &mut materials)?;
+    cones::read(root, &mut scene.cones, &mut materials)?;
     scene.ground = materials::read_ground(root, &mut materials)?;
     scene.materials = materials.into_rows();
     let environment = root.block("environment", &schema::ENVIRONMENT)?;

@@ -14,7 +14,8 @@ use std::path::PathBuf;
 pub(super) fn read(
     source: &Source,
     root: &Block,
-    (scene, materials): (&mut Scene, &mut Materials),
+    scene: &mut Scene,
+    materials: &mut Materials,
 ) -> Result<(), FileError> {
     for block in root.blocks("sphere", &schema::SPHERE)? {
         read_sphere(&block, &mut scene.spheres, materials)?;
@@ -23,7 +24,7 @@ pub(super) fn read(
         read_generate(&block, &mut scene.spheres, materials)?;
     }
     for block in root.blocks("file", &schema::FILE)? {
-        read_file(source, &block, (scene, materials))?;
+        read_file(source, &block, scene, materials)?;
     }
     Ok(())
 }
@@ -148,7 +149,8 @@ fn field(block: &Block) -> Result<Field, FileError> {
 fn read_file(
     source: &Source,
     block: &Block,
-    (scene, materials): (&mut Scene, &mut Materials),
+    scene: &mut Scene,
+    materials: &mut Materials,
 ) -> Result<(), FileError> {
     let file = block.need("path", "path = \"particles.csv\"")?;
     let format = block.value("format").map(|value| format(&value)).transpose()?;

@@ -8,7 +8,8 @@ use crate::scene::{FileError, Rgb, Sticks};
 
 pub(super) fn read(
     root: &Block,
-    (sticks, materials): (&mut Sticks, &mut Materials),
+    sticks: &mut Sticks,
+    materials: &mut Materials,
 ) -> Result<(), FileError> {
     for block in root.blocks("stick", &schema::STICK)? {
         let from = block.need("from", "from = [x, y, z]")?.point()?;

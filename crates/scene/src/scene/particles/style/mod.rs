@@ -156,8 +156,8 @@ impl ParticleStyle {
         let by_type: Vec<_> = by_type
             .map(|(style, opacity)| Ok((style.rows(path, particles)?, opacity)))
             .collect::<Result<_, FileError>>()?;
-        let chosen = (self.opacity.as_ref(), self.translucent.as_ref());
-        opacity::apply(path, particles, chosen, by_type.into_iter())?;
+        let (opacity, select) = (self.opacity.as_ref(), self.translucent.as_ref());
+        opacity::apply(path, particles, opacity, select, by_type.into_iter())?;
         Ok(legend)
     }
 

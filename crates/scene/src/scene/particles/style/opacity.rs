@@ -90,7 +90,8 @@ impl Opacity {
 pub(super) fn apply(
     path: &Path,
     particles: &mut Particles,
-    (opacity, select): (Option<&Opacity>, Option<&Selection>),
+    opacity: Option<&Opacity>,
+    select: Option<&Selection>,
     by_type: impl Iterator<Item = (Vec<usize>, f64)>,
 ) -> Result<(), FileError> {
     let count = particles.spheres.len();
