@@ -160,7 +160,7 @@ fn filter(samples: &[u8], layout: Layout) -> Vec<u8> {
             }
             let mut least = u64::MAX;
             for number in 0..FILTERS {
-                predict(number, (this, above), pixel, differences);
+                predict(number, this, above, pixel, differences);
                 let size = |byte: &u8| u64::from(byte.cast_signed().unsigned_abs());
                 let sum = differences.iter().map(size).sum();
                 if sum < least {
@@ -179,20 +179,21 @@ const FILTERS: u8 = 5;
 
 /// Computes the differences between the samples of a row and their predictions by a filter. Both rows,
 /// this one and the one above, begin with a pixel of zeros.
-fn predict(filter: u8, rows: (&[u8], &[u8]), pixel: usize, differences: &mut [u8]) {
+fn predict(filter: u8, this: &[u8], above: &[u8], pixel: usize, differences: &mut [u8]) {
     match filter {
-        0 => subtract(rows, pixel, differences, |_, _, _| 0),
-        1 => subtract(rows, pixel, differences, |left, _, _| left),
-        2 => subtract(rows, pixel, differences, |_, up, _| up),
-        3 => subtract(rows, pixel, differences, |left, up, _| left.midpoint(up)),
-        _ => subtract(rows, pixel, differences, paeth),
+        0 => subtract(this, above, pixel, differences, |_, _, _| 0),
+        1 => subtract(this, above, pixel, differences, |left, _, _| left),
+        2 => subtract(this, above, pixel, differences, |_, up, _| up),
+        3 => subtract(this, above, pixel, differences, |left, up, _| left.midpoint(up)),
+        _ => subtract(this, above, pixel, differences, paeth),
     }
 }
 
 /// Subtracts the prediction of each sample, from those to the left, above, and above to the left.
 #[inline(always)]
 fn subtract(
-    (this, above): (&[u8], &[u8]),
+    this: &[u8],
+    above: &[u8],
     pixel: usize,
     differences: &mut [u8],
     predicted: impl Fn(u8, u8, u8) -> u8,

@@ -168,10 +168,10 @@ pub(super) fn encode_tiff(
     let mut bytes = Cursor::new(Vec::new());
     let written = if codes.len() * 2 > LARGE {
         TiffEncoder::new_big(&mut bytes)
-            .and_then(|file| fill_tiff(file, (image, alpha.is_some()), &codes, options))
+            .and_then(|file| fill_tiff(file, image, alpha.is_some(), &codes, options))
     } else {
         TiffEncoder::new(&mut bytes)
-            .and_then(|file| fill_tiff(file, (image, alpha.is_some()), &codes, options))
+            .and_then(|file| fill_tiff(file, image, alpha.is_some(), &codes, options))
     };
     written.map_err(|error| error.to_string())?;
     Ok(bytes.into_inner())
@@ -179,7 +179,8 @@ pub(super) fn encode_tiff(
 
 fn fill_tiff<K: TiffKind>(
     file: TiffEncoder<&mut Cursor<Vec<u8>>, K>,
-    (image, alpha): (&Image, bool),
+    image: &Image,
+    alpha: bool,
     codes: &[u16],
     options: &WriteOptions,
 ) -> TiffResult<()> {
@@ -189,17 +190,18 @@ fn fill_tiff<K: TiffKind>(
     match options.depth {
         Depth::Eight => {
             let codes: Vec<u8> = codes.iter().map(|&code| code as u8).collect();
-            fill_directory::<colortype::RGB8, K>(&mut file, (image, alpha), &codes, options)
+            fill_directory::<colortype::RGB8, K>(&mut file, image, alpha, &codes, options)
         }
         Depth::Sixteen => {
-            fill_directory::<colortype::RGB16, K>(&mut file, (image, alpha), codes, options)
+            fill_directory::<colortype::RGB16, K>(&mut file, image, alpha, codes, options)
         }
     }
 }
 
 fn fill_directory<C: colortype::ColorType, K: TiffKind>(
     file: &mut TiffEncoder<&mut Cursor<Vec<u8>>, K>,
-    (image, alpha): (&Image, bool),
+    image: &Image,
+    alpha: bool,
     codes: &[C::Inner],
     options: &WriteOptions,
 ) -> Result<(), TiffError>
