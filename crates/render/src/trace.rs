@@ -48,7 +48,7 @@ pub(crate) fn closest_from_camera(
 fn closest_by(tracer: Tracer, world: &World, rays: &Rays, hits: &mut Hits, choice: Choice) -> u64 {
     closest_ground(world, rays, hits);
     if world.features.translucent {
-        return translucent::trace(tracer, Query::Closest, world, (rays, hits), choice);
+        return translucent::trace(tracer, Query::Closest, world, rays, hits, choice);
     }
     trace(tracer, Query::Closest, world, rays, hits)
 }
@@ -85,7 +85,7 @@ fn occluded_by(tracer: Tracer, world: &World, rays: &Rays, hits: &mut Hits, choi
         occlude_by_ground(ground, rays, hits);
     }
     if world.features.translucent {
-        return translucent::trace(tracer, Query::Any, world, (rays, hits), choice);
+        return translucent::trace(tracer, Query::Any, world, rays, hits, choice);
     }
     trace(tracer, Query::Any, world, rays, hits)
 }

@@ -149,14 +149,15 @@ impl Denoiser {
             return None;
         }
         let layers = progress.missing.layers(film, options);
-        let judged = self.judge_picture((film, mean), &layers, before, options)?;
+        let judged = self.judge_picture(film, mean, &layers, before, options)?;
         progress.last = Some((total, judged));
         Some(progress)
     }
 
     fn judge_picture(
         &self,
-        (film, mean): (&Film, Estimate),
+        film: &Film,
+        mean: Estimate,
         layers: &Layers,
         before: Noise,
         options: &Options,

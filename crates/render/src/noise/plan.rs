@@ -98,7 +98,7 @@ pub fn next_round(
         return open;
     }
     let wanted = stop.wanted(noise);
-    let tiles = Benefit::of(film, (stop, noise), slope.exponent());
+    let tiles = Benefit::of(film, stop, noise, slope.exponent());
     open.sort_by(|&a, &b| tiles[b as usize].rate().total_cmp(&tiles[a as usize].rate()));
     let total: f64 = tiles.iter().map(|tile| tile.variance).sum();
     let spent: f64 = film.tiles.iter().map(work).sum();
@@ -147,7 +147,8 @@ impl Benefit {
     /// tile's own number of samples.
     fn of(
         film: &Film,
-        (stop, of_picture): (&StopCondition, Option<Noise>),
+        stop: &StopCondition,
+        of_picture: Option<Noise>,
         exponent: f64,
     ) -> Vec<Self> {
         let count = film.tiles.len();

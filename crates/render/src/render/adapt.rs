@@ -62,7 +62,7 @@ pub(super) fn run(job: &Job, state: &mut State, stop: &StopCondition, watch: &Wa
             }
         }
         let noise = if judge.is_some() { judged } else { state.noise(stop.until_error.is_some()) };
-        refine(job, state, (stop, noise), watch, pause);
+        refine(job, state, stop, noise, watch, pause);
     }
 }
 
@@ -87,9 +87,9 @@ fn start(job: &Job, state: &mut State, stop: &StopCondition, watch: &Watch) {
     }
     let unpiloted = state.film.tiles.iter_mut().filter(|tile| tile.probes.pilot.is_none());
     let unpiloted = unpiloted.map(|tile| (tile, samples)).collect();
-    let paths = |tile: &Tile, samples| pass::pilot_paths(tile, (block, samples));
+    let paths = |tile: &Tile, samples| pass::pilot_paths(tile, block, samples);
     for_each_batch(job, batches(unpiloted, paths), watch, |(tiles, samples), work| {
-        pass::pilot_pass(job, tiles, (block, samples), work);
+        pass::pilot_pass(job, tiles, block, samples, work);
         watch.report(work, None, 0.0, None);
     });
 }
@@ -98,7 +98,8 @@ fn start(job: &Job, state: &mut State, stop: &StopCondition, watch: &Watch) {
 fn refine(
     job: &Job,
     state: &mut State,
-    (stop, noise): (&StopCondition, Option<Noise>),
+    stop: &StopCondition,
+    noise: Option<Noise>,
     watch: &Watch,
     pause: Option<f64>,
 ) {

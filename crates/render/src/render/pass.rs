@@ -86,7 +86,7 @@ impl TileSamples {
         }
         let streams =
             tiles.flat_map(|tile| tile.region.morton()).map(|(x, y)| (x, y, *job.sampler));
-        trace_paths(job, (view, regions), (streams, samples), work);
+        trace_paths(job, view, regions, streams, samples, work);
         Self::Paths
     }
 
@@ -159,7 +159,7 @@ pub(super) fn probe_pass(
         work.probes = ProbeBatch::new(range.clone(), streams);
         let starts = tiles.iter().flat_map(|tile| tile.probes.starts(job.sampler));
         let regions = tiles.iter().map(|tile| tile.region);
-        trace_paths(job, (view, regions), (starts, range), work);
+        trace_paths(job, view, regions, starts, range, work);
         let probes = std::mem::take(&mut work.probes);
         work.near_misses.finish(tiles.iter_mut().map(|tile| {
             let streams = tile.probes.streams();
@@ -186,7 +186,8 @@ pub(super) fn probe_paths(tile: &Tile, samples: u32) -> usize {
 pub(super) fn pilot_pass(
     job: &Job,
     tiles: &mut [&mut Tile],
-    (block, samples): (u32, u32),
+    block: u32,
+    samples: u32,
     work: &mut Workspace,
 ) {
     let Some(Tile { view, .. }) = tiles.first() else { return };
@@ -202,7 +203,7 @@ pub(super) fn pilot_pass(
     let pixels: Vec<_> = tiles.iter().map(pixels).collect();
     let streams = pixels.iter().flatten().map(|&(x, y, sampler, _)| (x, y, sampler));
     let regions = tiles.iter().map(|tile| tile.region);
-    trace_paths(job, (*view, regions), (streams, 0..samples), work);
+    trace_paths(job, *view, regions, streams, 0..samples, work);
     let mut radiance = work.paths.radiance.as_slice();
     for (tile, pixels) in tiles.iter_mut().zip(pixels) {
         let (own, rest) = radiance.split_at(pixels.len() * samples as usize);
@@ -214,15 +215,17 @@ pub(super) fn pilot_pass(
 }
 
 /// Returns the number of paths of a tile's pilot.
-pub(super) fn pilot_paths(tile: &Tile, (block, samples): (u32, u32)) -> usize {
+pub(super) fn pilot_paths(tile: &Tile, block: u32, samples: u32) -> usize {
     tile.len().div_ceil(block) as usize * samples as usize
 }
 
 /// Traces the paths of samples of pixels in these regions to their ends.
 pub(super) fn trace_paths(
     job: &Job,
-    (view, regions): (View, impl Iterator<Item = Region>),
-    (streams, samples): (impl Iterator<Item = (u32, u32, Sampler)>, Range<u32>),
+    view: View,
+    regions: impl Iterator<Item = Region>,
+    streams: impl Iterator<Item = (u32, u32, Sampler)>,
+    samples: Range<u32>,
     work: &mut Workspace,
 ) {
     work.view = view;

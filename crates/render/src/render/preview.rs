@@ -68,7 +68,7 @@ pub fn preview(
         || Workspace::new(world, elisions),
         |work, (pixels, tiles)| {
             if !cancelled() {
-                render_row(&job, &lighting, (tiles, width), pixels, work);
+                render_row(&job, &lighting, tiles, width, pixels, work);
             }
         },
     );
@@ -79,7 +79,8 @@ pub fn preview(
 fn render_row(
     job: &Job,
     lighting: &Lighting,
-    (tiles, width): (&[Region], usize),
+    tiles: &[Region],
+    width: usize,
     pixels: &mut [[f32; 3]],
     work: &mut Workspace,
 ) {

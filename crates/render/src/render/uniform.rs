@@ -50,7 +50,7 @@ pub(super) fn run(job: &Job, part: Range<u32>, state: &mut State, watch: &Watch)
                 let [.., Task { samples, of, .. }] = batch else { continue };
                 let count = (batch.len() * samples.len()) as u64;
                 let samples = part.start + samples.start..part.start + samples.end;
-                add(job, &tiles, (batch, samples), part.start, &mut work);
+                add(job, &tiles, batch, samples, part.start, &mut work);
                 let done = done.fetch_add(count, Ordering::Relaxed) + count;
                 watch.report(&mut work, Some(*of), done as f64 / all as f64, None);
             }
@@ -78,7 +78,8 @@ fn shared_tile(tile: &mut Tile) -> SharedTile<'_> {
 fn add(
     job: &Job,
     tiles: &[SharedTile],
-    (batch, samples): (&[Task], Range<u32>),
+    batch: &[Task],
+    samples: Range<u32>,
     first: u32,
     work: &mut Workspace,
 ) {

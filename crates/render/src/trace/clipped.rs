@@ -44,9 +44,9 @@ impl ClippedRays {
             clipped.rays.target[row] = rays.target[row];
             let span = world.cut.clip(&rays.exact(row), rays.own[row]);
             if span.from > 0.0 {
-                clipped.clip_entering(rays, (row, &span), hits, &mut cap);
+                clipped.clip_entering(rays, row, &span, hits, &mut cap);
             } else {
-                clipped.clip_inside(world, rays, (row, &span), hits, &mut cap);
+                clipped.clip_inside(world, rays, row, &span, hits, &mut cap);
             }
         }
         clipped
@@ -56,7 +56,8 @@ impl ClippedRays {
     fn clip_entering(
         &mut self,
         rays: &Rays,
-        (row, span): (usize, &Span),
+        row: usize,
+        span: &Span,
         hits: &mut Hits,
         cap: &mut impl FnMut(usize, Vec3, Crossing) -> Option<u32>,
     ) {
@@ -81,7 +82,8 @@ impl ClippedRays {
         &mut self,
         world: &World,
         rays: &Rays,
-        (row, span): (usize, &Span),
+        row: usize,
+        span: &Span,
         hits: &Hits,
         cap: &mut impl FnMut(usize, Vec3, Crossing) -> Option<u32>,
     ) {

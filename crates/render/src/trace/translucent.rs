@@ -54,7 +54,8 @@ pub(super) fn trace(
     tracer: Tracer,
     query: Query,
     world: &World,
-    (rays, hits): (&Rays, &mut Hits),
+    rays: &Rays,
+    hits: &mut Hits,
     choice: Choice,
 ) -> u64 {
     let from_camera = rays.own.first() == Some(&MISS);

@@ -14,7 +14,8 @@ use std::ops::Range;
 pub(super) fn add(
     job: &Job,
     tile: &mut Tile,
-    (pass, found): (&Range<u32>, &FoundPixels),
+    pass: &Range<u32>,
+    found: &FoundPixels,
     work: &mut Workspace,
 ) {
     let (mut unsummed, mut paths) = (Vec::new(), Vec::new());
@@ -44,7 +45,7 @@ pub(super) fn add(
         work.counters.shadow_rays += path.shadow_rays();
     }
     let lit = (!found.left.is_empty()).then_some(tile.region);
-    let radiance = complete(job, (&unsummed, pass, lit), &paths, work);
+    let radiance = complete(job, &unsummed, pass, lit, &paths, work);
     let mut each = radiance.chunks_exact(pass.len());
     let samples =
         pixels.into_iter().map(|pixel| match pixel.filter(|pixel| pixel.place().is_none()) {
@@ -61,7 +62,9 @@ pub(super) fn add(
 /// is a region in which the camera sees lights, if any.
 fn complete(
     job: &Job,
-    (pixels, pass, lit): (&[(u32, u32)], &Range<u32>, Option<Region>),
+    pixels: &[(u32, u32)],
+    pass: &Range<u32>,
+    lit: Option<Region>,
     paths: &[DevicePath],
     work: &mut Workspace,
 ) -> Vec<Rgb> {
@@ -79,8 +82,8 @@ fn complete(
             let (x, y) = pixels[path / pass.len()];
             (x, y, *job.sampler)
         };
-        let streams = (batch.iter().map(pixel), sample..sample + 1);
-        trace_paths(job, (View::Anything, lit.into_iter()), streams, work);
+        let streams = batch.iter().map(pixel);
+        trace_paths(job, View::Anything, lit.into_iter(), streams, sample..sample + 1, work);
         batch.iter().zip(&work.paths.radiance).for_each(|(&path, &found)| radiance[path] = found);
     }
     radiance

@@ -53,16 +53,19 @@ pub(super) fn run<'a>(
     }
     std::thread::scope(|scope| {
         for first in first {
-            scope.spawn(|| drive((job, device), (&queue, first), watch));
+            scope.spawn(|| drive(job, device, &queue, first, watch));
         }
-        rayon::broadcast(|_| help(job, &queue, (probed, &report), watch));
+        rayon::broadcast(|_| help(job, &queue, probed, &report, watch));
     });
 }
 
-/// Has a device follow the paths of batches until no tile lacks samples, or the device fails.
+/// Has a device follow the paths of batches, beginning with the tiles of `first`, until no tile
+/// lacks samples, or the device fails.
 fn drive<'q, 'a>(
-    (job, device): (&Job, &dyn DevicePaths),
-    (queue, mut first): (&'q TileQueue<'a>, Option<Taken<'q, 'a>>),
+    job: &Job,
+    device: &dyn DevicePaths,
+    queue: &'q TileQueue<'a>,
+    mut first: Option<Taken<'q, 'a>>,
     watch: &Watch,
 ) {
     let mut lights = SeenLights::default();
@@ -93,7 +96,8 @@ fn drive<'q, 'a>(
 fn help(
     job: &Job,
     queue: &TileQueue,
-    (probed, report): (Option<u32>, &(impl Fn(&mut Workspace, u64) + Sync)),
+    probed: Option<u32>,
+    report: &(impl Fn(&mut Workspace, u64) + Sync),
     watch: &Watch,
 ) {
     let mut work = Workspace::new(job.world, job.elisions);
@@ -102,7 +106,7 @@ fn help(
             Work::Add(mut taken, pixels) => {
                 work.clock.restart();
                 for tile in &mut taken.tiles {
-                    found::add(job, tile, (&taken.pass, &pixels), &mut work);
+                    found::add(job, tile, &taken.pass, &pixels, &mut work);
                 }
                 work.clock.end(Stage::Film);
                 queue.recycle(pixels);
@@ -113,7 +117,7 @@ fn help(
                 taken
             }
         };
-        finish(job, taken, (probed, report), &mut work);
+        finish(job, taken, probed, report, &mut work);
     }
 }
 
@@ -121,7 +125,8 @@ fn help(
 fn finish(
     job: &Job,
     mut taken: Taken,
-    (probed, report): (Option<u32>, &impl Fn(&mut Workspace, u64)),
+    probed: Option<u32>,
+    report: &impl Fn(&mut Workspace, u64),
     work: &mut Workspace,
 ) {
     if let Some(from) = probed {

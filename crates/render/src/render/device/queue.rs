@@ -97,7 +97,8 @@ impl<'a> TileQueue<'a> {
         self.lock().take(paths).map(|taken| self.taken(taken))
     }
 
-    fn taken(&self, (tiles, ends, pass): Tiles<'a>) -> Taken<'_, 'a> {
+    fn taken(&self, next: NextTiles<'a>) -> Taken<'_, 'a> {
+        let NextTiles { tiles, ends, pass } = next;
         Taken { queue: self, tiles, ends, pass }
     }
 
@@ -139,7 +140,8 @@ impl<'a> TileQueue<'a> {
                 return None;
             }
             if let Some(Found { tile, end, pass, pixels }) = state.found.pop() {
-                return Some(Work::Add(self.taken((vec![tile], vec![end], pass)), pixels));
+                let next = NextTiles { tiles: vec![tile], ends: vec![end], pass };
+                return Some(Work::Add(self.taken(next), pixels));
             }
             let taken = if cancelled() { None } else { state.take(paths) };
             if let Some(taken) = taken {
@@ -165,8 +167,13 @@ impl<'a> TileQueue<'a> {
     }
 }
 
-/// Tiles, the ends of the samples that they are to get, and their next pass.
-type Tiles<'a> = (Vec<&'a mut Tile>, Vec<u32>, Range<u32>);
+/// Tiles of the same pass.
+struct NextTiles<'a> {
+    tiles: Vec<&'a mut Tile>,
+    /// Ends of the samples that they are to get.
+    ends: Vec<u32>,
+    pass: Range<u32>,
+}
 
 impl<'a> State<'a> {
     /// Adds a tile with the samples that it lacks, if any.
@@ -180,7 +187,7 @@ impl<'a> State<'a> {
     }
 
     /// Takes tiles of the same pass with about so many paths, one at least.
-    fn take(&mut self, most: usize) -> Option<Tiles<'a>> {
+    fn take(&mut self, most: usize) -> Option<NextTiles<'a>> {
         let next = |&[start, end, ..]: &[u32; 4]| next_pass(&(start..end));
         let pass = next(self.waiting.first_key_value()?.0);
         let (mut tiles, mut ends, mut paths) = (Vec::new(), Vec::new(), 0);
@@ -195,7 +202,7 @@ impl<'a> State<'a> {
             ends.push(end);
         }
         self.taken += tiles.len();
-        Some((tiles, ends, pass))
+        Some(NextTiles { tiles, ends, pass })
     }
 }
 
