@@ -49,13 +49,13 @@ pub struct ChanceVariance {
 
 impl ChanceLight {
     /// Adds a term of one probe, of `probes`.
-    pub fn add(&mut self, (probe, probes): (usize, usize), term: Term) {
-        add(&mut self.terms, (probe, probes), term.all());
+    pub fn add(&mut self, probe: usize, probes: usize, term: Term) {
+        add(&mut self.terms, probe, probes, term.all());
     }
 
     /// Adds the light of a hit to the stream of its sample, of `streams`.
-    pub fn add_hit(&mut self, (stream, streams): (usize, usize), light: [f64; 3]) {
-        add(&mut self.hits, (stream, streams), light);
+    pub fn add_hit(&mut self, stream: usize, streams: usize, light: [f64; 3]) {
+        add(&mut self.hits, stream, streams, light);
     }
 
     /// Adds other samples of the same probes.
@@ -101,7 +101,7 @@ impl ChanceLight {
 }
 
 /// Adds to one of `count` sums.
-fn add(sums: &mut ExactSums, (index, count): (usize, usize), terms: [f64; 3]) {
+fn add(sums: &mut ExactSums, index: usize, count: usize, terms: [f64; 3]) {
     if sums.len() != count {
         *sums = ExactSums::new(count);
     }

@@ -34,7 +34,7 @@ pub fn integrate(job: &Job, work: &mut Workspace, distance: f64) {
     for kind in MaterialKind::ALL {
         let Some(queue) = work.queues.take(kind) else { continue };
         for rows in queue.rows() {
-            let surface_row = SurfaceRow::load(&queue, rows.0);
+            let surface_row = SurfaceRow::load(&queue, rows.first);
             let shading = ShadingRow::new(&queue, rows, &surface_row);
             let light = surface_row.state.throughput.times(surface_row.albedo(job.world));
             if distance == 0.0 {
@@ -48,7 +48,7 @@ pub fn integrate(job: &Job, work: &mut Workspace, distance: f64) {
                 t: [distance; ROW],
                 ..LightRow::distant(direction, Rgb::ONE, shading.lanes)
             };
-            enqueue_shadow_rays(job, work, &surface_row, (&sky, shading.lanes), light);
+            enqueue_shadow_rays(job, work, &surface_row, &sky, shading.lanes, light);
         }
         work.queues.put(kind, queue);
     }

@@ -4,6 +4,15 @@ use super::workspace::ROWS;
 use crate::lanes::{F32x16, MAX_LANES, Packing, U32x16};
 use crate::vec3::Vec3;
 
+/// Sixteen rows of columns, one in each lane, and the lanes that count.
+#[derive(Clone, Copy, Debug)]
+pub struct LaneRows {
+    /// Row of the first lane; those of the others follow.
+    pub first: usize,
+    /// Lanes that count.
+    pub lanes: u32,
+}
+
 /// `N` columns of 32-bit words, with a row for each path of a batch. The columns have the same length
 /// by type, so that one bounds check serves all.
 #[derive(Clone, Debug)]
@@ -80,7 +89,8 @@ impl<const N: usize> WordColumns<N> {
     #[inline(always)]
     pub fn pack<const M: usize>(
         &mut self,
-        (column, first): (usize, usize),
+        column: usize,
+        first: usize,
         packing: &Packing,
         rows: [U32x16; M],
     ) {

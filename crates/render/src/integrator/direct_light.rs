@@ -13,7 +13,9 @@ pub(super) fn sample_direct_light<M: Material>(
     job: &Job,
     work: &mut Workspace,
     bounce: u32,
-    (shading, bsdf, lanes): (&ShadingRow, &M::Bsdf<F32x16>, u32),
+    shading: &ShadingRow,
+    bsdf: &M::Bsdf<F32x16>,
+    lanes: u32,
 ) {
     if lanes == 0 {
         return;
@@ -43,7 +45,8 @@ pub(super) fn sample_direct_light<M: Material>(
     let response = bsdf.eval(shading.outgoing, incoming) * weight;
     let light = state.throughput.times(response).times(samples.weight);
     let above = Lanes::lt(F32x16::splat(0.0), incoming.z).bits();
-    enqueue_shadow_rays(job, work, shading.surface_row, (&samples, samples.lanes & above), light);
+    let lanes = samples.lanes & above;
+    enqueue_shadow_rays(job, work, shading.surface_row, &samples, lanes, light);
 }
 
 /// Returns the power heuristic: weights of samples with density `found`, more than 0, that another

@@ -2,7 +2,7 @@
 
 use super::Job;
 use super::caustics;
-use super::columns::row;
+use super::columns::{LaneRows, row};
 use super::direct_light::power_heuristic;
 use super::mirrored_light;
 use super::path_state::{PathStateRow, PreviousBounce};
@@ -47,14 +47,14 @@ pub(super) fn add_environment(job: &Job, work: &mut Workspace, bounce: u32) {
         let seen = if environment.illuminates { lit } else { lit & specular_only };
         let mut light = match constant {
             Some(color) => Vec3::splat(color.x, color.y, color.z),
-            None => environment_light(job, work, (first, seen), &state),
+            None => environment_light(job, work, LaneRows { first, lanes: seen }, &state),
         };
         if let Some(Rgb { x, y, z }) = behind_glass {
             let glass = F32x16::lanes(left_glass(job, work, first, lit & specular_only));
             light = Vec3::select_lanes(glass, Vec3::splat(x, y, z), light);
         }
         if lights.suns_have_discs() {
-            add_suns(job, work, (first, lit), &mut light);
+            add_suns(job, work, LaneRows { first, lanes: lit }, &mut light);
         }
         work.paths.add(state.path, state.throughput.times(light), lit);
     }
@@ -89,15 +89,16 @@ fn gather_light(lanes: u32, light: impl Fn(usize) -> Rgb) -> Vec3<F32x16> {
     Vec3::new(F32x16::new(x), F32x16::new(y), F32x16::new(z))
 }
 
-/// Returns the light of the environment along the rays of `lanes` of sixteen rows, with MIS weights
-/// where light samples may find it too; 0 in the other lanes.
+/// Returns the light of the environment along the rays of sixteen rows, with MIS weights where
+/// light samples may find it too; 0 in lanes that do not count.
 #[inline(always)]
 fn environment_light(
     job: &Job,
     work: &Workspace,
-    (first, lanes): (usize, u32),
+    rows: LaneRows,
     state: &PathStateRow,
 ) -> Vec3<F32x16> {
+    let LaneRows { first, lanes } = rows;
     let (environment, lights) = (&job.world.environment, &job.world.lights);
     let Some(picture) = environment.picture() else {
         return gather_light(lanes, |lane| {
@@ -123,12 +124,12 @@ fn environment_light(
     Vec3::select_lanes(<F32x16 as Lanes>::lanes(lanes), radiance * weight, none)
 }
 
-/// Adds the light of suns along the rays of `lanes` of sixteen rows, with MIS weights where light
-/// samples may find it too.
-fn add_suns(job: &Job, work: &Workspace, (first, lanes): (usize, u32), light: &mut Vec3<F32x16>) {
+/// Adds the light of suns along the rays of sixteen rows, with MIS weights where light samples may
+/// find it too.
+fn add_suns(job: &Job, work: &Workspace, rows: LaneRows, light: &mut Vec3<F32x16>) {
     let lights = &job.world.lights;
-    for lane in set_bits(lanes) {
-        let (row, channels) = (first + lane, [&mut light.x, &mut light.y, &mut light.z]);
+    for lane in set_bits(rows.lanes) {
+        let (row, channels) = (rows.first + lane, [&mut light.x, &mut light.y, &mut light.z]);
         let previous = work.states.previous(row);
         if previous.after_diffuse() {
             continue;
@@ -142,7 +143,7 @@ fn add_suns(job: &Job, work: &Workspace, (first, lanes): (usize, u32), light: &m
             } else if previous.mirrored_light_sampled() {
                 0.0
             } else {
-                caustics::weight(job, work, row, (CausticSource::Sun(sun), direction))
+                caustics::weight(job, work, row, CausticSource::Sun(sun), direction)
             };
             let radiance = radiance * weight;
             (0..3).for_each(|i| *channels[i] += radiance[i]);
@@ -154,7 +155,7 @@ fn add_suns(job: &Job, work: &Workspace, (first, lanes): (usize, u32), light: &m
 pub(super) fn add_emitted(job: &Job, work: &mut Workspace) {
     let world = job.world;
     let Some(queue) = work.queues.take(MaterialKind::Emitter) else { return };
-    for (first, lanes) in queue.rows() {
+    for LaneRows { first, lanes } in queue.rows() {
         let state = queue.state_row(first);
         let radiance = gather_light(lanes, |lane| {
             let material = world.material(queue.hit(first + lane));
@@ -170,7 +171,7 @@ pub(super) fn add_emitted(job: &Job, work: &mut Workspace) {
                 0.0
             } else {
                 let emitter = CausticSource::Sphere(work.hits.sphere[row]);
-                caustics::weight(job, work, row, (emitter, work.surface.point.row(row)))
+                caustics::weight(job, work, row, emitter, work.surface.point.row(row))
             };
         }
         let light = state.throughput.times(radiance) * F32x16::new(weight);

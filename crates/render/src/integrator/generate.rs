@@ -38,7 +38,7 @@ pub fn generate_streams(
         let offset = job.filter.offset_row(job.sampler.pixel_row(&numbers));
         let lens =
             job.has_lens().then(|| sampling::concentric_disk(job.sampler.lens_row(&numbers)));
-        generate_rays(job, work, first, (offset, lens));
+        generate_rays(job, work, first, offset, lens);
     }
     sample_thresholds(job, work, count);
     finish_camera_rays(job, work);
@@ -65,15 +65,16 @@ fn start(
     let mut count = 0;
     if samples.len().is_multiple_of(MAX_LANES) {
         for (x, y, sampler) in streams {
-            work.start_pixel(&sampler, (x, y, samples.start), count..count + samples.len());
-            count += samples.len();
+            let end = count + samples.len();
+            work.start_pixel(&sampler, x, y, samples.start, count..end);
+            count = end;
         }
         return count;
     }
     let mut row = SampleRow::default();
     for (x, y, sampler) in streams {
         for index in samples.clone() {
-            row.set(count % MAX_LANES, (x, y, index), &sampler);
+            row.set(count % MAX_LANES, x, y, index, &sampler);
             count += 1;
             if count.is_multiple_of(MAX_LANES) {
                 work.start_samples(job.sampler, &row, count - MAX_LANES);
@@ -106,7 +107,7 @@ pub fn generate_centers(job: &Job, pixels: impl Iterator<Item = (u32, u32)>, wor
     let middle = [F32x16::splat(0.0); 2];
     for first in (0..count).step_by(MAX_LANES) {
         work.states.init_camera(first);
-        generate_rays(job, work, first, (middle, Some(middle)));
+        generate_rays(job, work, first, middle, Some(middle));
     }
     finish_camera_rays(job, work);
 }
@@ -118,7 +119,8 @@ fn generate_rays(
     job: &Job,
     work: &mut Workspace,
     first: usize,
-    (offset, lens): ([F32x16; 2], Option<[F32x16; 2]>),
+    offset: [F32x16; 2],
+    lens: Option<[F32x16; 2]>,
 ) {
     let (origin, direction) = (&mut work.rays.origin, &mut work.rays.direction);
     work.seen_lights.set_pixels(first, &origin.x[first..], &origin.y[first..]);

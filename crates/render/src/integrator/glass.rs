@@ -1,6 +1,7 @@
 //! Scattering of paths at glass, sixteen at a time.
 
 use super::Job;
+use super::columns::LaneRows;
 use super::interior;
 use super::material_queues::MaterialQueue;
 use super::mirrored_light::{MirrorRow, sample_mirrored_light};
@@ -65,19 +66,21 @@ pub(super) fn scatter_by(
 ) {
     let Some(queue) = work.queues.take(MaterialKind::Dielectric) else { return };
     let (tinted, nested) = (is_tinted(job.world), work.paths.tracks_interiors());
-    for (first, lanes) in queue.rows() {
+    for rows in queue.rows() {
+        let LaneRows { first, lanes } = rows;
         let state = queue.state_row(first);
         let choice = choice(&work.paths, &state);
-        let mut hits = gather_hits(job.world, work, (&queue, first), (state, choice));
+        let mut hits = gather_hits(job.world, work, &queue, first, state, choice);
         if nested {
             set_bits(lanes).for_each(|lane| find_outside_ior(job.world, work, &mut hits, lane));
         }
         let mut simple = 0;
         if job.samples_mirrored_light() {
             simple = simple_lanes(job, &hits, lanes);
-            add_mirrored_light(job, work, (&queue, first), (&hits, lanes));
+            add_mirrored_light(job, work, &queue, rows, &hits);
             if bounce + 2 <= job.depth() {
-                add_internally_mirrored_light(job, work, (&queue, first), (&hits, simple));
+                let rows = LaneRows { first, lanes: simple };
+                add_internally_mirrored_light(job, work, &queue, rows, &hits);
             }
         }
         let rays = reflect_or_refract(&hits);
@@ -92,7 +95,7 @@ pub(super) fn scatter_by(
             let inside = simple & (rays.inward | before);
             state.previous = state.previous.with_mirrored_light(F32x16::lanes(mirrored | inside));
         }
-        spawn_rays(work, lanes, (&hits, &state), &rays);
+        spawn_rays(work, lanes, &hits, &state, &rays);
     }
     work.queues.put(MaterialKind::Dielectric, queue);
 }
@@ -123,9 +126,11 @@ fn simple_lanes(job: &Job, hits: &GlassHits, lanes: u32) -> u32 {
 fn add_mirrored_light(
     job: &Job,
     work: &mut Workspace,
-    (queue, first): (&MaterialQueue, usize),
-    (hits, lanes): (&GlassHits, u32),
+    queue: &MaterialQueue,
+    rows: LaneRows,
+    hits: &GlassHits,
 ) {
+    let LaneRows { first, lanes } = rows;
     let [x, y, z] = hits.normal.map(|column| F32x16::new(column.map(|x| x as f32)));
     let normal = Vec3::new(x, y, z);
     let cosine = -hits.direction.dot(normal);
@@ -146,7 +151,7 @@ fn add_mirrored_light(
         }));
         tint(job.world, lanes, hits) * reflectance
     };
-    sample_mirrored_light(job, work, (&row, lanes & outside(hits)), factor);
+    sample_mirrored_light(job, work, &row, lanes & outside(hits), factor);
 }
 
 /// Rays inside a sphere that is hit, mirrored there, and refracted where they leave the sphere next.
@@ -162,9 +167,11 @@ struct InnerMirror {
 fn add_internally_mirrored_light(
     job: &Job,
     work: &mut Workspace,
-    (queue, first): (&MaterialQueue, usize),
-    (hits, lanes): (&GlassHits, u32),
+    queue: &MaterialQueue,
+    rows: LaneRows,
+    hits: &GlassHits,
 ) {
+    let LaneRows { first, lanes } = rows;
     if lanes == 0 {
         return;
     }
@@ -182,7 +189,7 @@ fn add_internally_mirrored_light(
         let color = colors(job.world, lanes, hits);
         tint(job.world, lanes, hits).times(color) * narrow(kept)
     };
-    sample_mirrored_light(job, work, (&row, lanes), factor);
+    sample_mirrored_light(job, work, &row, lanes, factor);
 }
 
 #[inline(always)]
@@ -218,8 +225,10 @@ fn is_tinted(world: &World) -> bool {
 fn gather_hits(
     world: &World,
     work: &Workspace,
-    (queue, first): (&MaterialQueue, usize),
-    (state, choice): (PathStateRow, F32x16),
+    queue: &MaterialQueue,
+    first: usize,
+    state: PathStateRow,
+    choice: F32x16,
 ) -> GlassHits {
     let hit = queue.hit_row(first).to_array();
     let mut radius = [0.0; MAX_LANES];
@@ -333,7 +342,8 @@ fn colors(world: &World, lanes: u32, hits: &GlassHits) -> Vec3<F32x16> {
 fn spawn_rays(
     work: &mut Workspace,
     lanes: u32,
-    (hits, state): (&GlassHits, &PathStateRow),
+    hits: &GlassHits,
+    state: &PathStateRow,
     rays: &GlassRays,
 ) {
     let [x, y, z] = rays.direction;

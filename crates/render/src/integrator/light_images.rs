@@ -10,7 +10,7 @@
 //! pixel's filter in place of a BSDF. By way of a sphere, it is weighted against what the camera ray finds.
 
 use super::Job;
-use super::caustics;
+use super::caustics::{self, CameraSegment};
 use super::direct_light::power_heuristic;
 use super::shadow_queue::{self, ShadowRay};
 use super::workspace::Workspace;
@@ -208,7 +208,7 @@ fn sample_lights(job: &Job, work: &mut Workspace, selected: impl Fn(&SeenLight) 
                 if *tiny {
                     sample_points(job, work, &row, light);
                 } else {
-                    set_bits(lanes).for_each(|lane| sample_places(job, work, (&row, lane), light));
+                    set_bits(lanes).for_each(|lane| sample_places(job, work, &row, lane, light));
                 }
             }
         }
@@ -217,12 +217,12 @@ fn sample_lights(job: &Job, work: &mut Workspace, selected: impl Fn(&SeenLight) 
 
 /// Samples points of a light with a tiny image, and weights them by the pixel's filter at their images.
 fn sample_points(job: &Job, work: &mut Workspace, row: &PixelRow, light: &SeenLight) {
-    let points = (work.rays.origin.load::<F32x16>(row.first), row.lanes);
+    let origins = work.rays.origin.load::<F32x16>(row.first);
     let [u, v, ..] = *row.numbers;
     if light.sphere == MISS {
         for lane in set_bits(row.lanes) {
             let u = [u, v].map(|row| row.to_array()[lane]);
-            sample_point(job, work, (row, lane), (light, u));
+            sample_point(job, work, row, lane, light, u);
         }
         return;
     }
@@ -231,13 +231,13 @@ fn sample_points(job: &Job, work: &mut Workspace, row: &PixelRow, light: &SeenLi
         if (path != CausticPath::Reflected) != light.through {
             continue;
         }
-        let source = (light.sphere, light.source);
-        let Some(query) = casters.query(source, path, points) else { return };
+        let query = casters.query((light.sphere, light.source), path, (origins, row.lanes));
+        let Some(query) = query else { return };
         let sample = query.sample([u, v]);
         for lane in set_bits(sample.lanes & row.lanes) {
             let one = |v: Row<F32x16>| -> Vec3 { v.map(|row| row.to_array()[lane]).into() };
             let number = |row: F32x16| row.to_array()[lane];
-            let (origin, toward) = (one(points.0), one(sample.toward));
+            let (origin, toward) = (one(origins), one(sample.toward));
             let camera = camera_pdf(job, row.pixel, origin, toward);
             let (pdf, kept) = (number(sample.pdf), number(sample.kept));
             // The probability with which a camera ray goes on to the light.
@@ -252,7 +252,7 @@ fn sample_points(job: &Job, work: &mut Workspace, row: &PixelRow, light: &SeenLi
                 length: sample.length[1][lane],
                 cosine: number(sample.incidence),
             };
-            push(job, work, row.first + lane, light, (&way, mis * kept * camera / pdf));
+            push(job, work, row.first + lane, light, &way, mis * kept * camera / pdf);
         }
     }
 }
@@ -261,8 +261,10 @@ fn sample_points(job: &Job, work: &mut Workspace, row: &PixelRow, light: &SeenLi
 fn sample_point(
     job: &Job,
     work: &mut Workspace,
-    (row, lane): (&PixelRow, usize),
-    (light, u): (&SeenLight, [f32; 2]),
+    row: &PixelRow,
+    lane: usize,
+    light: &SeenLight,
+    u: [f32; 2],
 ) {
     let origin = work.rays.origin.row(row.first + lane);
     let (lights, world) = (&job.world.lights, job.world);
@@ -282,7 +284,7 @@ fn sample_point(
         length: sample.t,
         cosine: 1.0,
     };
-    push(job, work, row.first + lane, light, (&way, camera / pdf));
+    push(job, work, row.first + lane, light, &way, camera / pdf);
 }
 
 /// Returns the density by solid angle of the camera rays of a pixel, from a point of the lens.
@@ -293,12 +295,7 @@ pub(super) fn camera_pdf(job: &Job, [x, y]: [u32; 2], origin: Vec3, toward: Vec3
 }
 
 /// Samples a light for one path: tests places in its pixel.
-fn sample_places(
-    job: &Job,
-    work: &mut Workspace,
-    (row, lane): (&PixelRow, usize),
-    light: &SeenLight,
-) {
+fn sample_places(job: &Job, work: &mut Workspace, row: &PixelRow, lane: usize, light: &SeenLight) {
     let one = |row: F32x16| row.to_array()[lane];
     let [u, v, choice, _] = row.numbers.map(one);
     let places = job.filter.offset_row(rotated(places_in_square(), [u, v]));
@@ -307,7 +304,8 @@ fn sample_places(
     let [across, down] = places.map(widen);
     let halves = [0, 1].map(|half| {
         let place = [middle[0] + across[half], middle[1] + down[half]];
-        find_ways(job.world, light, job.world.camera.rays(place, lens))
+        let (origin, toward) = job.world.camera.rays(place, lens);
+        find_ways(job.world, light, origin, toward)
     });
     let kept = halves.each_ref().map(|ways| ways.kept.to_array());
     let total: f64 = kept.iter().flatten().sum();
@@ -326,7 +324,7 @@ fn sample_places(
         }
     }
     let way = halves[chosen / 8].way(chosen % 8);
-    push(job, work, row.first + lane, light, (&way, (total / PLACES as f64) as f32));
+    push(job, work, row.first + lane, light, &way, (total / PLACES as f64) as f32);
 }
 
 /// Returns sixteen well-distributed points of the unit square.
@@ -350,7 +348,8 @@ fn rotated(places: [F32x16; 2], by: [f32; 2]) -> [F32x16; 2] {
 fn find_ways<D: Doubles>(
     world: &World,
     light: &SeenLight,
-    (origin, toward): (Row<D>, Row<D>),
+    origin: Row<D>,
+    toward: Row<D>,
 ) -> Ways<D> {
     let one = D::splat(1.0);
     let direct = Ways {
@@ -376,7 +375,7 @@ fn find_ways<D: Doubles>(
         }
         CausticSource::Sphere(row) => {
             let (center, radius) = world.spheres.exact(row as usize);
-            first_hit((ways.exit, ways.toward_light), center, radius)
+            first_hit(ways.exit, ways.toward_light, center, radius)
         }
     };
     let kept = D::select(reached, ways.kept, D::splat(0.0));
@@ -390,7 +389,8 @@ fn every<D: Doubles>(v: DVec3) -> Row<D> {
 /// Returns the distances at which rays from outside of a sphere hit it, and those that do.
 #[inline(always)]
 fn first_hit<D: Doubles>(
-    (origin, toward): (Row<D>, Row<D>),
+    origin: Row<D>,
+    toward: Row<D>,
     center: DVec3,
     radius: f64,
 ) -> (D, D::Mask) {
@@ -408,7 +408,7 @@ fn first_hit<D: Doubles>(
 #[inline(always)]
 fn by_sphere<D: Doubles>(caster: &Caster, through: bool, rays: Ways<D>) -> Ways<D> {
     let (zero, one, two) = (D::splat(0.0), D::splat(1.0), D::splat(2.0));
-    let (entry, hit) = first_hit((rays.origin, rays.toward), caster.center, caster.radius);
+    let (entry, hit) = first_hit(rays.origin, rays.toward, caster.center, caster.radius);
     let point = rays.origin + rays.toward * entry;
     let normal = (point - every(caster.center)) * D::splat(caster.radius.recip());
     let cosine = -normal.dot_unfused(rays.toward);
@@ -468,13 +468,7 @@ fn color(world: &World, light: &SeenLight, cosine: f32) -> Rgb {
 }
 
 /// Enqueues the shadow rays of a way, with a weight.
-fn push(
-    job: &Job,
-    work: &mut Workspace,
-    row: usize,
-    light: &SeenLight,
-    (way, weight): (&Way, f32),
-) {
+fn push(job: &Job, work: &mut Workspace, row: usize, light: &SeenLight, way: &Way, weight: f32) {
     let color = color(job.world, light, way.cosine) * weight;
     if !(color.max_element() > 0.0 && color.is_finite()) {
         return;
@@ -490,6 +484,6 @@ fn push(
         path: work.states.path(row) as u32,
         light: color,
     };
-    let first = (light.sphere != MISS).then_some((way.origin, way.toward, way.entry));
-    caustics::push_segments(job, work, first, &ray);
+    let first = CameraSegment { origin: way.origin, direction: way.toward, length: way.entry };
+    caustics::push_segments(job, work, (light.sphere != MISS).then_some(&first), &ray);
 }

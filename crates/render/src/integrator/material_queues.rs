@@ -1,6 +1,6 @@
 //! Material queues: hits sorted by kind of material, so that a kernel shades hits of one kind.
 
-use super::columns::{WordColumns, float_bits, row};
+use super::columns::{LaneRows, WordColumns, float_bits, row};
 use super::material_table::MaterialTable;
 use super::path_state::{PathStateRow, PathStates};
 use super::surface::Surface;
@@ -112,15 +112,15 @@ impl MaterialQueues {
     fn sort_by(&mut self, columns: &HitColumns, queue_of: impl Fn(U32x16) -> U32x16) {
         self.0.iter_mut().flatten().for_each(|queue| queue.clear());
         let count = columns.rays.len();
-        for start in (0..count).step_by(MAX_LANES) {
-            let there = first_lanes(count - start);
-            let hits = U32x16::new(*row(&columns.hits.sphere, start));
+        for first in (0..count).step_by(MAX_LANES) {
+            let there = first_lanes(count - first);
+            let hits = U32x16::new(*row(&columns.hits.sphere, first));
             let queues: F32x16 = bytemuck::cast(queue_of(hits));
             for (number, queue) in self.0.iter_mut().enumerate() {
                 let Some(queue) = queue else { continue };
                 let lanes = queues.has_bits_of(bits(number as u32)).bits() & there;
                 if lanes != 0 {
-                    queue.push(columns, (start, lanes));
+                    queue.push(columns, LaneRows { first, lanes });
                 }
             }
         }
@@ -161,10 +161,11 @@ impl MaterialQueue {
         }
     }
 
-    /// Iterates over rows of sixteen hits: the first of each, and the lanes that are valid.
-    pub fn rows(&self) -> impl Iterator<Item = (usize, u32)> + use<> {
+    /// Iterates over the hits, sixteen at a time, with the lanes that are valid.
+    pub fn rows(&self) -> impl Iterator<Item = LaneRows> + use<> {
         let len = self.len;
-        (0..len).step_by(MAX_LANES).map(move |start| (start, first_lanes(len - start)))
+        let starts = (0..len).step_by(MAX_LANES);
+        starts.map(move |first| LaneRows { first, lanes: first_lanes(len - first) })
     }
 
     /// Iterates over the rows of the rays.
@@ -233,7 +234,8 @@ impl MaterialQueue {
 
     /// Appends some of sixteen rows.
     #[inline(always)]
-    fn push(&mut self, columns: &HitColumns, (start, lanes): (usize, u32)) {
+    fn push(&mut self, columns: &HitColumns, rows: LaneRows) {
+        let LaneRows { first: start, lanes } = rows;
         let (packing, first) = (Packing::new(lanes), self.len);
         let inside = columns.surface.inside(start) & lanes;
         if inside != 0 {
@@ -245,10 +247,10 @@ impl MaterialQueue {
         let point = columns.surface.point.load(start).map(float_bits);
         let facing = columns.surface.facing.load(start).map(float_bits);
         let rest = columns.states.load(start);
-        self.columns.pack((ROW, first), &packing, [number, hit]);
-        self.columns.pack((DIRECTION, first), &packing, [direction.x, direction.y, direction.z]);
-        self.columns.pack((POINT, first), &packing, [point.x, point.y, point.z]);
-        self.columns.pack((FACING, first), &packing, [facing.x, facing.y, facing.z]);
+        self.columns.pack(ROW, first, &packing, [number, hit]);
+        self.columns.pack(DIRECTION, first, &packing, [direction.x, direction.y, direction.z]);
+        self.columns.pack(POINT, first, &packing, [point.x, point.y, point.z]);
+        self.columns.pack(FACING, first, &packing, [facing.x, facing.y, facing.z]);
         self.states.pack(first, &packing, &rest);
         self.len += packing.count();
     }

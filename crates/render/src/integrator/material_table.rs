@@ -7,6 +7,12 @@ use crate::shade::{GatheredParams, Material, MaterialId, MaterialKind, Params, f
 use crate::world::World;
 use bytemuck::Zeroable;
 
+/// The materials of one kind: `table` returns them.
+pub(super) struct MaterialsOfKind<T> {
+    pub(super) kind: MaterialKind,
+    pub(super) table: T,
+}
+
 /// The materials of all surfaces of a world of few spheres, in registers.
 ///
 /// The index is the last four bits of a hit. [`GROUND`] and [`MISS`] have their own entries.
@@ -94,15 +100,17 @@ impl Params<F32x16> for TableParams<'_> {
     }
 }
 
-/// Returns the BSDFs of a row of hits, all of one kind; `table` returns their materials.
+/// Returns the BSDFs of a row of hits, all of one kind, by `lookup` if there is such a table.
 #[inline(always)]
 pub(super) fn gather_bsdfs<M: Material>(
-    (world, lookup): (&World, Option<&MaterialTable>),
-    (kind, table): (MaterialKind, &impl Fn(MaterialId) -> M),
+    world: &World,
+    lookup: Option<&MaterialTable>,
+    materials: &MaterialsOfKind<impl Fn(MaterialId) -> M>,
     hits: &[u32; MAX_LANES],
 ) -> M::Bsdf<F32x16> {
+    let MaterialsOfKind { kind, table } = materials;
     if let Some(lookup) = lookup {
-        let params = &lookup.params[kind as usize];
+        let params = &lookup.params[*kind as usize];
         return M::row(&TableParams { params, hits: U32x16::new(*hits) });
     }
     let mut each = [params_of(world, table, hits[0]); MAX_LANES];

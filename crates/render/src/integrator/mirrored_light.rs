@@ -6,7 +6,7 @@
 //! reflectance. Paths that are mirrored, and reach such a light next, leave it out.
 
 use super::Job;
-use super::caustics;
+use super::caustics::{self, ReachedEmitter};
 use super::path_state::PreviousBounce;
 use super::shadow_queue::{self, ShadowRay};
 use super::workspace::Workspace;
@@ -56,12 +56,13 @@ impl Job<'_> {
 pub(super) fn sample_mirrored_light(
     job: &Job,
     work: &mut Workspace,
-    (row, lanes): (&MirrorRow, u32),
+    row: &MirrorRow,
+    lanes: u32,
     factor: impl FnOnce() -> Vec3<F32x16>,
 ) {
     let near = lanes & lights_toward(job.world, row);
     if near != 0 {
-        enqueue(job, work, (row, near), factor());
+        enqueue(job, work, row, near, factor());
     }
 }
 
@@ -94,7 +95,7 @@ fn lights_toward(world: &World, row: &MirrorRow) -> u32 {
 }
 
 #[inline(never)]
-fn enqueue(job: &Job, work: &mut Workspace, (row, lanes): (&MirrorRow, u32), factor: Vec3<F32x16>) {
+fn enqueue(job: &Job, work: &mut Workspace, row: &MirrorRow, lanes: u32, factor: Vec3<F32x16>) {
     for lane in set_bits(lanes) {
         let one = |v: Vec3<F32x16>| -> glam::Vec3 { v.map(|row| row.to_array()[lane]).into() };
         let (point, direction, factor) = (one(row.point), one(row.direction), one(factor));
@@ -104,16 +105,16 @@ fn enqueue(job: &Job, work: &mut Workspace, (row, lanes): (&MirrorRow, u32), fac
         let emitters = 0..job.world.lights.emitters.len();
         let targets = suns.filter_map(|sun| sun_toward(job.world, sun, direction)).chain(
             emitters.filter_map(|emitter| {
-                emitter_toward(job.world, emitter, (point, direction), row.own[lane])
+                emitter_toward(job.world, emitter, point, direction, row.own[lane])
             }),
         );
         for target in targets {
-            let weight = caustics::mirrored_weight(
-                job,
-                work,
-                (ray, previous),
-                (target.source, point + direction * target.end.0 as f32, direction),
-            );
+            let end = match target.source {
+                CausticSource::Sphere(_) => point + direction * target.end.0 as f32,
+                CausticSource::Sun(_) => direction,
+            };
+            let reached = ReachedEmitter { source: target.source, end, toward: direction };
+            let weight = caustics::mirrored_weight(job, work, ray, previous, &reached);
             let light = factor * target.radiance * weight;
             if light.max_element() <= 0.0 {
                 continue;
@@ -146,7 +147,8 @@ fn sun_toward(world: &World, index: usize, direction: glam::Vec3) -> Option<Targ
 fn emitter_toward(
     world: &World,
     index: usize,
-    (point, direction): (glam::Vec3, glam::Vec3),
+    point: glam::Vec3,
+    direction: glam::Vec3,
     own: u32,
 ) -> Option<Target> {
     let row = world.lights.emitters[index];

@@ -19,7 +19,6 @@
 
 use super::Job;
 use super::caustics;
-use super::path_state::PreviousBounce;
 use super::probe_batch::ProbeSample;
 use super::workspace::Workspace;
 use crate::elementary::acos;
@@ -109,9 +108,8 @@ pub(super) fn record(job: &Job, work: &mut Workspace, bounce: u32) {
         }
         for sun in 0..lights.suns.len() {
             rows.extend(
-                near_sun(job.world, work, row, sun).and_then(|target| {
-                    near_miss(job, work, (row, bounce, previous), (&target, 1.0))
-                }),
+                near_sun(job.world, work, row, sun)
+                    .and_then(|target| near_miss(job, work, row, bounce, &target, 1.0)),
             );
         }
         let stride = lights.emitters.len().div_ceil(TESTED).max(1);
@@ -120,7 +118,7 @@ pub(super) fn record(job: &Job, work: &mut Workspace, bounce: u32) {
         for emitter in (first..lights.emitters.len()).step_by(stride) {
             rows.extend(near_emitter(job.world, work, row, emitter).and_then(|target| {
                 let density = density(job.world, work.rays.own[row], target.light, &mut in_view)?;
-                near_miss(job, work, (row, bounce, previous), (&target, stride as f32 / density))
+                near_miss(job, work, row, bounce, &target, stride as f32 / density)
             }));
         }
     }
@@ -240,15 +238,17 @@ fn part_in_view(world: &World, light: Light) -> Option<f32> {
 fn near_miss(
     job: &Job,
     work: &Workspace,
-    (row, bounce, previous): (usize, u32, PreviousBounce<f32>),
-    (target, count): (&Target, f32),
+    row: usize,
+    bounce: u32,
+    target: &Target,
+    count: f32,
 ) -> Option<NearMiss> {
-    let mut weight = caustics::weight(job, work, row, (target.source, target.nearest));
+    let mut weight = caustics::weight(job, work, row, target.source, target.nearest);
     if weight == 0.0 {
         // The camera sees the light, and it is sampled in this pixel.
         weight = work.seen_lights.deviation(job, work.states.path(row), target.source);
     }
-    if previous.mirrored_light_sampled() {
+    if work.states.previous(row).mirrored_light_sampled() {
         // Every path adds the light in the mirrored direction, times the reflectance; this is one of the
         // few that follow that direction.
         weight *= mirrored_probability(job.world, work, row).sqrt();
@@ -305,14 +305,14 @@ impl NearMisses {
             rows = rest;
             for near in of_tile.iter().filter(|near| near.hit) {
                 let light = near.value.to_array().map(f64::from);
-                sums.add_hit((near.sample.stream as usize, streams), light);
+                sums.add_hit(near.sample.stream as usize, streams, light);
             }
             for same in of_tile.chunk_by(|a, b| event(a) == event(b)) {
                 let term = match same {
                     [a, b] => pair(a, b),
                     _ => same.iter().map(single).fold(Term::default(), Add::add),
                 };
-                sums.add((Group::of(same[0].sample).probe as usize, streams / 2), term);
+                sums.add(Group::of(same[0].sample).probe as usize, streams / 2, term);
             }
         }
         self.rows.clear();
@@ -371,9 +371,9 @@ mod tests {
     use crate::film::Role;
     use crate::sampling::{stream, unit};
 
-    fn near((tile, stream, sample): (u32, u32, u32), across: f32, hit: bool) -> NearMiss {
+    fn near(sample: ProbeSample, across: f32, hit: bool) -> NearMiss {
         NearMiss {
-            sample: ProbeSample { tile, stream, sample },
+            sample,
             bounce: 0,
             light: Light::Emitter(0),
             own: MISS,
@@ -403,7 +403,8 @@ mod tests {
 
     #[test]
     fn rays_that_pass_a_light_far_apart_are_rare_hits_and_close_ones_edges() {
-        let near = |stream, across, hit| near((0, stream, 0), across, hit);
+        let near =
+            |stream, across, hit| near(ProbeSample { tile: 0, stream, sample: 0 }, across, hit);
         let far = pair(&near(0, 0.0, false), &near(1, 0.05, false));
         // Each of two samples, of which the variance is half the sum.
         assert_eq!((far.rare, far.edges), (2.0 * 2.0 * 0.25, 0.0));
@@ -417,7 +418,9 @@ mod tests {
         // Streams 0 and 1 are a steering probe, 2 and 3 a judge: samples 9 of the first are a pair. Another tile
         // in the batch has none.
         let rows = |tile| {
-            let near = |stream, sample, across, hit| near((tile, stream, sample), across, hit);
+            let near = |stream, sample, across, hit| {
+                near(ProbeSample { tile, stream, sample }, across, hit)
+            };
             [near(1, 9, 0.004, false), near(0, 9, 0.0, true), near(2, 10, 0.0, false)]
         };
         let finish = |rows: Vec<NearMiss>| {

@@ -10,12 +10,13 @@
 
 use super::Job;
 use super::caustics;
+use super::columns::LaneRows;
 use super::direct_light::sample_direct_light;
 use super::emission;
 use super::glass;
 use super::light_images;
 use super::material_queues::MaterialQueue;
-use super::material_table::gather_bsdfs;
+use super::material_table::{MaterialsOfKind, gather_bsdfs};
 use super::mirrored_light::{MirrorRow, sample_mirrored_light};
 use super::near_misses;
 use super::path_state::PathStateRow;
@@ -69,10 +70,11 @@ struct Shade<'a> {
 impl KindVisitor for Shade<'_> {
     fn visit<M: Material>(&mut self, kind: MaterialKind, table: impl Fn(MaterialId) -> M) {
         let Some(queue) = self.work.queues.take(kind) else { return };
+        let materials = MaterialsOfKind { kind, table };
         for rows in queue.rows() {
-            shade(self.job, self.work, self.bounce, (&queue, rows), (kind, &table));
+            shade(self.job, self.work, self.bounce, &queue, rows, &materials);
         }
-        caustics::sample_all(self.job, self.work, self.bounce.index, (kind, &table));
+        caustics::sample_all(self.job, self.work, self.bounce.index, &materials);
         self.work.queues.put(kind, queue);
     }
 }
@@ -82,16 +84,17 @@ fn shade<M: Material>(
     job: &Job,
     work: &mut Workspace,
     bounce: Bounce,
-    (queue, rows): (&MaterialQueue, (usize, u32)),
-    material: (MaterialKind, &impl Fn(MaterialId) -> M),
+    queue: &MaterialQueue,
+    rows: LaneRows,
+    materials: &MaterialsOfKind<impl Fn(MaterialId) -> M>,
 ) {
-    let surface_row = SurfaceRow::load(queue, rows.0);
+    let surface_row = SurfaceRow::load(queue, rows.first);
     let shading = ShadingRow::new(queue, rows, &surface_row);
-    let materials = (job.world, work.material_table.as_ref());
-    let bsdf = gather_bsdfs(materials, material, &shading.surface_row.at.own);
+    let lookup = work.material_table.as_ref();
+    let bsdf = gather_bsdfs(job.world, lookup, materials, &shading.surface_row.at.own);
     if job.has_lights() {
         let lanes = shading.lanes & !bsdf.is_delta().bits();
-        sample_direct_light::<M>(job, work, bounce.index, (&shading, &bsdf, lanes));
+        sample_direct_light::<M>(job, work, bounce.index, &shading, &bsdf, lanes);
     }
     let mirrors = M::HAS_DIFFUSE_BASE && job.samples_mirrored_light();
     if mirrors {
@@ -106,23 +109,26 @@ fn shade<M: Material>(
         let lanes = shading.lanes & !shading.surface_row.inside;
         let throughput = shading.surface_row.state.throughput;
         let factor = || throughput.times(bsdf.mirrored(shading.outgoing));
-        sample_mirrored_light(job, work, (&row, lanes), factor);
+        sample_mirrored_light(job, work, &row, lanes, factor);
     }
     // After all other light of these paths, which is added in this order for any composition of batches.
     if job.has_lights() {
         let lanes = shading.lanes & !bsdf.is_delta().bits();
-        caustics::enqueue_queries(job, work, bounce.index, (&shading, lanes), material);
+        caustics::enqueue_queries(job, work, bounce.index, &shading, lanes, materials);
     }
-    spawn_rays::<M>(job, work, bounce, (&shading, &bsdf, mirrors));
+    spawn_rays::<M>(job, work, bounce, &shading, &bsdf, mirrors);
 }
 
 /// Samples the BSDFs, applies Russian roulette, and spawns the next rays of the paths that survive.
+/// `mirrors` is true if mirrored light has been sampled.
 #[inline(always)]
 fn spawn_rays<M: Material>(
     job: &Job,
     work: &mut Workspace,
     Bounce { index, threshold }: Bounce,
-    (shading, bsdf, mirrors): (&ShadingRow, &M::Bsdf<F32x16>, bool),
+    shading: &ShadingRow,
+    bsdf: &M::Bsdf<F32x16>,
+    mirrors: bool,
 ) {
     let (roulette, state) = (job.settings.roulette, &shading.surface_row.state);
     // Without a choice between lobes and without roulette, no random numbers are needed for them.
@@ -146,5 +152,5 @@ fn spawn_rays<M: Material>(
         ..*state
     };
     let (lanes, direction) = (shading.lanes & survives.bits(), shading.to_world(scatter.incoming));
-    work.spawn_rays(job.world, (shading.surface_row, lanes), direction, &next);
+    work.spawn_rays(job.world, shading.surface_row, lanes, direction, &next);
 }

@@ -120,10 +120,10 @@ impl PathStates {
             throughput.z,
             float_bits(row.previous.0),
         ];
-        self.columns.pack((PATH, first), packing, rows);
+        self.columns.pack(PATH, first, packing, rows);
         if self.normals {
             let Vec3 { x, y, z } = row.normal.map(float_bits);
-            self.columns.pack((NORMAL, first), packing, [x, y, z]);
+            self.columns.pack(NORMAL, first, packing, [x, y, z]);
         }
     }
 

@@ -7,7 +7,7 @@
 
 use super::Job;
 use super::glass;
-use super::material_table::gather_bsdfs;
+use super::material_table::{MaterialsOfKind, gather_bsdfs};
 use super::path_state::PathStateRow;
 use super::shading_row::{ShadingRow, SurfaceRow};
 use super::shadow_queue::enqueue_shadow_rays;
@@ -75,10 +75,11 @@ struct Shade<'a> {
 impl KindVisitor for Shade<'_> {
     fn visit<M: Material>(&mut self, kind: MaterialKind, table: impl Fn(MaterialId) -> M) {
         let Some(queue) = self.work.queues.take(kind) else { return };
+        let materials = MaterialsOfKind { kind, table };
         for rows in queue.rows() {
-            let surface_row = SurfaceRow::load(&queue, rows.0);
+            let surface_row = SurfaceRow::load(&queue, rows.first);
             let shading = ShadingRow::new(&queue, rows, &surface_row);
-            self.shade::<M>(&shading, (kind, &table));
+            self.shade(&shading, &materials);
         }
         self.work.queues.put(kind, queue);
     }
@@ -89,10 +90,11 @@ impl Shade<'_> {
     fn shade<M: Material>(
         &mut self,
         shading: &ShadingRow,
-        material: (MaterialKind, &impl Fn(MaterialId) -> M),
+        materials: &MaterialsOfKind<impl Fn(MaterialId) -> M>,
     ) {
-        let materials = (self.job.world, self.work.material_table.as_ref());
-        let bsdf: M::Bsdf<F32x16> = gather_bsdfs(materials, material, &shading.surface_row.at.own);
+        let (world, lookup) = (self.job.world, self.work.material_table.as_ref());
+        let bsdf: M::Bsdf<F32x16> =
+            gather_bsdfs(world, lookup, materials, &shading.surface_row.at.own);
         let lanes = shading.lanes & !bsdf.is_delta().bits();
         if lanes != 0 {
             self.add_environment::<M>(shading, &bsdf, lanes);
@@ -140,7 +142,7 @@ impl Shade<'_> {
             let light = surface_row.state.throughput.times(response).times(samples.weight);
             let lit = samples.lanes & Lanes::lt(F32x16::splat(0.0), incoming.z).bits();
             if self.lighting.shadows {
-                enqueue_shadow_rays(self.job, self.work, surface_row, (&samples, lit), light);
+                enqueue_shadow_rays(self.job, self.work, surface_row, &samples, lit, light);
             } else {
                 self.work.paths.add(surface_row.state.path, light, lit);
             }
@@ -166,7 +168,7 @@ impl Shade<'_> {
         let normal = shading.surface_row.at.normal;
         let next = PathStateRow { throughput, previous, normal, ..*state };
         let direction = shading.to_world(mirror(shading.outgoing));
-        self.work.spawn_rays(self.job.world, (shading.surface_row, lanes), direction, &next);
+        self.work.spawn_rays(self.job.world, shading.surface_row, lanes, direction, &next);
     }
 }
 

@@ -1,5 +1,6 @@
 //! Rows of sixteen hits as their materials see them, with the states of the paths.
 
+use super::columns::LaneRows;
 use super::material_queues::MaterialQueue;
 use super::path_state::PathStateRow;
 use super::workspace::Workspace;
@@ -75,19 +76,14 @@ impl SurfaceRow {
 }
 
 impl<'a> ShadingRow<'a> {
-    /// Creates a row from sixteen hits of a queue, of which `lanes` are valid, and their surface
-    /// points.
+    /// Creates a row from sixteen hits of a queue and their surface points.
     #[inline(always)]
-    pub fn new(
-        queue: &MaterialQueue,
-        (first, lanes): (usize, u32),
-        surface_row: &'a SurfaceRow,
-    ) -> Self {
+    pub fn new(queue: &MaterialQueue, rows: LaneRows, surface_row: &'a SurfaceRow) -> Self {
         let bases = Bases::about(surface_row.at.normal);
-        let mut outgoing = bases.to_local(-queue.direction_row(first));
+        let mut outgoing = bases.to_local(-queue.direction_row(rows.first));
         // At grazing angles, rounding may move the direction below the horizon.
         outgoing.z = Lanes::max(outgoing.z, F32x16::splat(f32::EPSILON));
-        Self { surface_row, lanes, bases, outgoing }
+        Self { surface_row, lanes: rows.lanes, bases, outgoing }
     }
 
     /// Transforms local directions to world space, of unit length.

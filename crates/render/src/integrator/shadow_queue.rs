@@ -55,8 +55,10 @@ impl ShadowQueue {
     fn push_row(
         &mut self,
         from: &ReceiverRow,
-        (samples, lanes): (&LightRow, u32),
-        (path, light): (U32x16, Vec3<F32x16>),
+        samples: &LightRow,
+        lanes: u32,
+        path: U32x16,
+        light: Vec3<F32x16>,
     ) {
         let (packing, first) = (Packing::new(lanes), self.rays.len());
         self.rays.append_packed(&packing, (from.point, samples.direction), &from.own);
@@ -100,7 +102,8 @@ pub fn enqueue_shadow_rays(
     job: &Job,
     work: &mut Workspace,
     surface_row: &SurfaceRow,
-    (samples, lanes): (&LightRow, u32),
+    samples: &LightRow,
+    lanes: u32,
     light: Vec3<F32x16>,
 ) {
     let lit = Lanes::lt(F32x16::splat(0.0), light.max_element()).bits();
@@ -112,7 +115,7 @@ pub fn enqueue_shadow_rays(
     if !work.shadow_queue.has_room(ROW) {
         trace_shadow_rays(job, work);
     }
-    work.shadow_queue.push_row(&surface_row.at, (samples, lanes), (surface_row.state.path, light));
+    work.shadow_queue.push_row(&surface_row.at, samples, lanes, surface_row.state.path, light);
 }
 
 /// Returns whether a sphere occludes a light as seen from a point of its inside: the light is behind
@@ -190,7 +193,7 @@ mod tests {
         for bits in [0, 1, 0xffff, 0xff, 0xa5a5, 0x8000, 0xfffe] {
             let mut shadows = ShadowQueue::new(false);
             for _ in 0..3 {
-                shadows.push_row(&from, (&samples, bits), (U32x16::new(numbers), light));
+                shadows.push_row(&from, &samples, bits, U32x16::new(numbers), light);
             }
             let each = [(); 3].into_iter().flat_map(|()| set_bits(bits));
             assert_eq!(shadows.rays.len(), 3 * u32::count_ones(bits) as usize);

@@ -184,19 +184,21 @@ fn compute_rows(
         let hits = work.hits.sphere[first..].first_chunk().expect("columns hold whole rows");
         // Rays of a row often all miss: samples of a pixel are neighbors.
         if *hits != [MISS; ROW] {
-            let spheres = gather(hits);
-            compute_row(world, work, first, spheres);
+            let (center, radius) = gather(hits);
+            compute_row(world, work, first, center, radius);
         }
     }
 }
 
-/// Computes points and normals of eight rows; lanes without a hit get arbitrary values.
+/// Computes points and normals of eight rows, on spheres with these centers and radii; lanes
+/// without a hit get arbitrary values.
 #[inline(always)]
 fn compute_row(
     world: &World,
     work: &mut Workspace,
     first: usize,
-    (center, radius): (Vec3<F64x8>, F64x8),
+    center: Vec3<F64x8>,
+    radius: F64x8,
 ) {
     let hit = numbers(&work.hits.sphere[first..]);
     let missed = equal(hit, F64x8::splat(f64::from(MISS)));

@@ -125,7 +125,7 @@ struct BroadcastSurface<M: Material> {
 }
 
 impl<M: Material> BroadcastSurface<M> {
-    fn new(work: &Workspace, row: usize, (params, local): (&M::Params, &LocalSurface)) -> Self {
+    fn new(work: &Workspace, row: usize, params: &M::Params, local: &LocalSurface) -> Self {
         let surface_row = SurfaceRow::broadcast(work, row, local);
         Self {
             row,
@@ -146,7 +146,7 @@ impl Shade<'_> {
     /// Shades the hit in a row.
     fn shade<M: Material>(&self, work: &mut Workspace, row: usize, params: &M::Params) {
         let local = LocalSurface::new(work, row);
-        let base = BroadcastSurface::<M>::new(work, row, (params, &local));
+        let base = BroadcastSurface::<M>::new(work, row, params, &local);
         if M::HAS_DIFFUSE_BASE && base.bsdf.is_delta().bits() == 0 {
             for light in 0..self.job.world.lights.len() {
                 self.sample_light(work, light, &base);
@@ -155,7 +155,7 @@ impl Shade<'_> {
                 self.sample_environment(work, &base);
             }
         }
-        self.spawn_rays::<M>(work, (params, &local), &base.surface_row);
+        self.spawn_rays::<M>(work, params, &local, &base.surface_row);
     }
 
     /// Samples one light by stratified samples; one sample is enough for a light without extent.
@@ -174,7 +174,7 @@ impl Shade<'_> {
             self.job.sampler.split(&work.sampler_state(base.row), self.event(light), count);
         for (first, count) in rows(count) {
             let samples = view.sample_row(points.row(first, count), count);
-            self.enqueue_shadow_rays(work, base, (share, &samples));
+            self.enqueue_shadow_rays(work, base, share, &samples);
         }
     }
 
@@ -195,7 +195,7 @@ impl Shade<'_> {
             }
             let [r, g, b] = weight.map(F32x16::new);
             samples.weight = Row3::new(r, g, b);
-            self.enqueue_shadow_rays(work, base, (share, &samples));
+            self.enqueue_shadow_rays(work, base, share, &samples);
         }
     }
 
@@ -205,7 +205,8 @@ impl Shade<'_> {
         &self,
         work: &mut Workspace,
         base: &BroadcastSurface<M>,
-        (share, samples): (Rgb, &LightRow),
+        share: Rgb,
+        samples: &LightRow,
     ) {
         let incoming = base.bases.to_local(samples.direction);
         let response = base.bsdf.eval(base.outgoing, incoming);
@@ -216,7 +217,8 @@ impl Shade<'_> {
             self.job,
             work,
             &base.surface_row,
-            (samples, samples.lanes & above),
+            samples,
+            samples.lanes & above,
             light,
         );
     }
@@ -226,7 +228,8 @@ impl Shade<'_> {
     fn spawn_rays<M: Material>(
         &self,
         work: &mut Workspace,
-        (params, local): (&M::Params, &LocalSurface),
+        params: &M::Params,
+        local: &LocalSurface,
         surface_row: &SurfaceRow,
     ) {
         let bsdf: M::Bsdf<f32> = M::row(&BroadcastParams(*params));
@@ -249,7 +252,7 @@ impl Shade<'_> {
         let splat = |v: glam::Vec3| Row3::from(v).map(F32x16::splat);
         let direction = splat(local.to_world(incoming.into()));
         let state = PathStateRow { throughput: splat(throughput / survival), ..surface_row.state };
-        work.spawn_rays(self.job.world, (surface_row, 1), direction, &state);
+        work.spawn_rays(self.job.world, surface_row, 1, direction, &state);
     }
 }
 

@@ -154,11 +154,13 @@ impl Workspace {
     }
 
     /// Starts whole rows of samples, from `first` on, of the pixel in column `x` and row `y`; stores the
-    /// pixel's coordinates as origins of rays.
+    /// pixel's coordinates as origins of rays `rows`.
     pub(super) fn start_pixel(
         &mut self,
         sampler: &Sampler,
-        (x, y, first): (u32, u32, u32),
+        x: u32,
+        y: u32,
+        first: u32,
         rows: Range<usize>,
     ) {
         for (row, first) in rows.clone().step_by(MAX_LANES).zip((first..).step_by(MAX_LANES)) {
@@ -266,7 +268,8 @@ impl Workspace {
     pub(super) fn spawn_rays(
         &mut self,
         world: &World,
-        (surface_row, lanes): (&SurfaceRow, u32),
+        surface_row: &SurfaceRow,
+        lanes: u32,
         direction: row::Vec3<F32x16>,
         state: &PathStateRow,
     ) {

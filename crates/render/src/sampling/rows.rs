@@ -45,7 +45,7 @@ pub struct SampleRow {
 impl SampleRow {
     /// Sets a lane: sample `index` of the pixel in column `x` and row `y`.
     #[inline]
-    pub fn set(&mut self, lane: usize, (x, y, index): (u32, u32, u32), sampler: &Sampler) {
+    pub fn set(&mut self, lane: usize, x: u32, y: u32, index: u32, sampler: &Sampler) {
         (self.x[lane], self.y[lane], self.index[lane]) = (x, y, index);
         self.seed[lane] = sampler.seed;
     }
@@ -329,7 +329,10 @@ mod tests {
             let path = |lane: u32| (lane % 5, 7 * lane, 9000 * lane);
             let replica = |lane: u32| sampler.replica(u64::from(lane / 9));
             let mut samples = SampleRow::default();
-            (0..16).for_each(|lane| samples.set(lane as usize, path(lane), &replica(lane)));
+            for lane in 0..16 {
+                let (x, y, index) = path(lane);
+                samples.set(lane as usize, x, y, index, &replica(lane));
+            }
             let expected = StartRow::of(&std::array::from_fn(|lane| {
                 let (x, y, index) = path(lane as u32);
                 replica(lane as u32).start(x, y, index)
@@ -346,7 +349,7 @@ mod tests {
     fn states_are_kept_by_path() {
         let sampler = Sampler::new(SamplerKind::Sobol, 4, 16);
         let mut samples = SampleRow::default();
-        (0..3).for_each(|i| samples.set(i as usize, (i, 7, 70_000 + i), &sampler));
+        (0..3).for_each(|i| samples.set(i as usize, i, 7, 70_000 + i, &sampler));
         let start = sampler.start_samples(&samples);
         let mut states = SamplerStates::with_paths(3);
         states.set_row(0, &start);

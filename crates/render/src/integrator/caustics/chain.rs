@@ -37,6 +37,16 @@ impl SpecularChain {
     };
 }
 
+/// An emitter that a path has reached by specular surfaces.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::integrator) struct ReachedEmitter {
+    pub(in crate::integrator) source: CausticSource,
+    /// Point of an emissive sphere; of a sun, the direction toward it.
+    pub(in crate::integrator) end: Vec3,
+    /// Direction of the ray there.
+    pub(in crate::integrator) toward: Vec3,
+}
+
 /// Updates the chains of all paths, before they are scattered.
 pub(in crate::integrator) fn track_chains(job: &Job, work: &mut Workspace) {
     let Some(casters) = job.casters() else { return };
@@ -50,7 +60,7 @@ pub(in crate::integrator) fn track_chains(job: &Job, work: &mut Workspace) {
             *chain = if from_camera && casters.has(hit) {
                 start_at_camera(&work.rays, row, hit)
             } else if previous.light_sampled() && casters.has(hit) {
-                start_chain(job.world, &work.rays, row, (previous.density(), hit))
+                start_chain(job.world, &work.rays, row, previous.density(), hit)
             } else if repeated && !previous.light_sampled() {
                 SpecularChain { inside: true, ..*chain }
             } else {
@@ -67,8 +77,8 @@ fn start_at_camera(rays: &Rays, row: usize, sphere: u32) -> SpecularChain {
 }
 
 /// Returns the chain of a path that has reached a sphere from a surface that is not specular, on the
-/// outside of a sphere or above the ground.
-fn start_chain(world: &World, rays: &Rays, row: usize, (pdf, sphere): (f32, u32)) -> SpecularChain {
+/// outside of a sphere or above the ground, by a direction of density `pdf`.
+fn start_chain(world: &World, rays: &Rays, row: usize, pdf: f32, sphere: u32) -> SpecularChain {
     let (point, toward) = (rays.origin.row(row), rays.direction.row(row));
     let Some(normal) = world.normal_at(rays.own[row], point) else { return SpecularChain::NONE };
     if normal.dot(toward) <= 0.0 {
@@ -77,17 +87,19 @@ fn start_chain(world: &World, rays: &Rays, row: usize, (pdf, sphere): (f32, u32)
     SpecularChain { start: [point, normal], own: rays.own[row], toward, pdf, sphere, inside: false }
 }
 
-/// Returns the MIS weight of an emitter that the path in a row reaches by specular surfaces alone, at a point
-/// or in a direction, beside caustic samples; 0 if the camera sees it, and samples it in its pixels.
+/// Returns the MIS weight of an emitter that the path in a row reaches by specular surfaces alone,
+/// with [`end`](ReachedEmitter::end), beside caustic samples; 0 if the camera sees it, and samples
+/// it in its pixels.
 pub(in crate::integrator) fn weight(
     job: &Job,
     work: &Workspace,
     row: usize,
-    (emitter, end): (CausticSource, Vec3),
+    source: CausticSource,
+    end: Vec3,
 ) -> f32 {
     let path = work.states.path(row);
     let seen_in = |sphere, through| {
-        let light = SeenLight { source: emitter, sphere, through };
+        let light = SeenLight { source, sphere, through };
         work.seen_lights.find(job, path, &light)
     };
     if work.rays.own[row] == MISS {
@@ -98,66 +110,59 @@ pub(in crate::integrator) fn weight(
     if chain.sphere == MISS || work.rays.own[row] != chain.sphere {
         return 1.0;
     }
-    let end = (emitter, end, work.rays.direction.row(row));
+    let reached = ReachedEmitter { source, end, toward: work.rays.direction.row(row) };
     if chain.own != MISS {
-        return chain.weight(casters, end, None);
+        return chain.weight(casters, &reached, None);
     }
     let image = seen_in(chain.sphere, chain.inside);
-    image.map_or(1.0, |image| chain.weight_at_camera((job, work, path), image, end))
+    image.map_or(1.0, |image| chain.weight_at_camera(job, work, path, image, &reached))
 }
 
-/// Returns the MIS weight of an emitter, at a point of it and in this direction, that the ray in a row
-/// sees in the mirroring sphere that it has hit, beside caustic samples.
+/// Returns the MIS weight of an emitter that the ray in a row sees in the mirroring sphere that it
+/// has hit, beside caustic samples.
 pub(in crate::integrator) fn mirrored_weight(
     job: &Job,
     work: &Workspace,
-    (row, previous): (usize, PreviousBounce<f32>),
-    (emitter, point, toward): (CausticSource, Vec3, Vec3),
+    row: usize,
+    previous: PreviousBounce<f32>,
+    reached: &ReachedEmitter,
 ) -> f32 {
     let (Some(casters), hit) = (job.casters(), work.hits.sphere[row]) else { return 1.0 };
     if work.rays.own[row] == MISS {
-        let light = SeenLight { source: emitter, sphere: hit, through: false };
+        let light = SeenLight { source: reached.source, sphere: hit, through: false };
         let path = work.states.path(row);
-        let end = if matches!(emitter, CausticSource::Sun(_)) { toward } else { point };
         let chain = start_at_camera(&work.rays, row, hit);
         let image = work.seen_lights.find(job, path, &light);
-        return image.map_or(1.0, |image| {
-            chain.weight_at_camera((job, work, path), image, (emitter, end, toward))
-        });
+        return image.map_or(1.0, |image| chain.weight_at_camera(job, work, path, image, reached));
     }
     if !previous.light_sampled() || !casters.has(hit) {
         return 1.0;
     }
-    let chain = start_chain(job.world, &work.rays, row, (previous.density(), hit));
+    let chain = start_chain(job.world, &work.rays, row, previous.density(), hit);
     if chain.sphere == MISS {
         return 1.0;
     }
-    let end = if matches!(emitter, CausticSource::Sun(_)) { toward } else { point };
-    chain.weight(casters, (emitter, end, toward), None)
+    chain.weight(casters, reached, None)
 }
 
 impl SpecularChain {
     /// Returns the weight of an emitter of which the camera sees this image, beside samples in its pixels.
     fn weight_at_camera(
         &self,
-        (job, work, path): (&Job, &Workspace, usize),
+        job: &Job,
+        work: &Workspace,
+        path: usize,
         image: &LightImage,
-        end: (CausticSource, Vec3, Vec3),
+        reached: &ReachedEmitter,
     ) -> f32 {
         let Some(casters) = job.casters().filter(|_| image.is_tiny()) else { return 0.0 };
         let ([origin, toward], pixel) = (self.start, work.seen_lights.pixel(path));
         let pdf = light_images::camera_pdf(job, pixel, origin, toward);
-        Self { pdf, ..*self }.weight(casters, end, Some(1.0))
+        Self { pdf, ..*self }.weight(casters, reached, Some(1.0))
     }
 
-    /// Returns the MIS weight of an emitter, at a point or in a direction, that is reached in direction
-    /// `toward_emitter`.
-    fn weight(
-        &self,
-        casters: &CausticCasters,
-        (emitter, end, toward_emitter): (CausticSource, Vec3, Vec3),
-        rate: Option<f64>,
-    ) -> f32 {
+    /// Returns the MIS weight of an emitter.
+    fn weight(&self, casters: &CausticCasters, reached: &ReachedEmitter, rate: Option<f64>) -> f32 {
         let [point, normal] = self.start;
         casters.weight(&CausticHit {
             start: Receiver { point, normal, own: self.own },
@@ -165,9 +170,9 @@ impl SpecularChain {
             pdf: self.pdf,
             sphere: self.sphere,
             through: self.inside,
-            emitter,
-            end,
-            toward_emitter,
+            emitter: reached.source,
+            end: reached.end,
+            toward_emitter: reached.toward,
             rate,
         })
     }

@@ -9,11 +9,12 @@
 mod chain;
 mod queues;
 
-pub(super) use chain::{mirrored_weight, track_chains, weight};
+pub(super) use chain::{ReachedEmitter, mirrored_weight, track_chains, weight};
+pub(super) use queues::CameraSegment;
 
 use super::Job;
 use super::direct_light::power_heuristic;
-use super::material_table::gather_bsdfs;
+use super::material_table::{MaterialsOfKind, gather_bsdfs};
 use super::shading_row::ShadingRow;
 use super::shadow_queue::{self, ShadowRay};
 use super::workspace::{BATCH, Workspace};
@@ -66,8 +67,9 @@ pub(super) fn enqueue_queries<M: Material>(
     job: &Job,
     work: &mut Workspace,
     bounce: u32,
-    (shading, lanes): (&ShadingRow, u32),
-    material: (MaterialKind, &impl Fn(MaterialId) -> M),
+    shading: &ShadingRow,
+    lanes: u32,
+    materials: &MaterialsOfKind<impl Fn(MaterialId) -> M>,
 ) {
     let lanes = lanes & !shading.surface_row.inside;
     if lanes == 0 || bounce + 2 > job.depth() {
@@ -98,7 +100,7 @@ pub(super) fn enqueue_queries<M: Material>(
         };
         work.caustics.queries.push(&row, lanes);
         if work.caustics.queries.len() >= MAX_LANES {
-            sample_queries(job, work, bounce, material);
+            sample_queries(job, work, bounce, materials);
         }
         place = next_in_square(place);
     }
@@ -109,10 +111,10 @@ pub(super) fn sample_all<M: Material>(
     job: &Job,
     work: &mut Workspace,
     bounce: u32,
-    material: (MaterialKind, &impl Fn(MaterialId) -> M),
+    materials: &MaterialsOfKind<impl Fn(MaterialId) -> M>,
 ) {
     while work.caustics.queries.len() > 0 {
-        sample_queries(job, work, bounce, material);
+        sample_queries(job, work, bounce, materials);
     }
 }
 
@@ -129,7 +131,7 @@ fn sample_queries<M: Material>(
     job: &Job,
     work: &mut Workspace,
     bounce: u32,
-    material: (MaterialKind, &impl Fn(MaterialId) -> M),
+    materials: &MaterialsOfKind<impl Fn(MaterialId) -> M>,
 ) {
     let world = job.world;
     let (row, lanes) = work.caustics.queries.take();
@@ -140,7 +142,7 @@ fn sample_queries<M: Material>(
         rate: row.rate,
     };
     let sample = query.sample(row.place);
-    let bsdf = gather_bsdfs((world, work.material_table.as_ref()), material, &row.own);
+    let bsdf = gather_bsdfs(world, work.material_table.as_ref(), materials, &row.own);
     let incoming = Bases::about(row.normal).to_local(sample.toward);
     let response = bsdf.eval(row.outgoing, incoming);
     // The power heuristic, divided by the density.
@@ -161,7 +163,7 @@ fn sample_queries<M: Material>(
     if !work.caustics.first_segments.has_room() {
         trace_first_segments(job, work);
     }
-    work.caustics.first_segments.push_row((&query, &sample), (&row.own, &row.path), light, lanes);
+    work.caustics.first_segments.push_row(&query, &sample, &row, light, lanes);
 }
 
 /// Returns the radiance of the emitters, times the color of the spheres.
@@ -214,12 +216,12 @@ pub(super) fn specular_color(world: &World, sphere: u32, through: bool, cosine: 
     }
 }
 
-/// Enqueues a shadow ray that starts at a specular sphere, after a segment from the camera to it with this
-/// origin, direction and length; or one that starts at the camera itself.
+/// Enqueues a shadow ray that starts at a specular sphere, after a segment from the camera to it;
+/// or one that starts at the camera itself.
 pub(super) fn push_segments(
     job: &Job,
     work: &mut Workspace,
-    first: Option<(glam::Vec3, glam::Vec3, f64)>,
+    first: Option<&CameraSegment>,
     ray: &ShadowRay,
 ) {
     let Some(first) = first else {

@@ -95,6 +95,14 @@ fn first<T>(column: &[T]) -> &[T; MAX_LANES] {
     column.first_chunk().expect("columns hold whole rows")
 }
 
+/// A segment of a camera ray, to a specular sphere.
+#[derive(Clone, Copy)]
+pub(in crate::integrator) struct CameraSegment {
+    pub(in crate::integrator) origin: glam::Vec3,
+    pub(in crate::integrator) direction: glam::Vec3,
+    pub(in crate::integrator) length: f64,
+}
+
 /// First segments of shadow rays, from surfaces to specular spheres.
 #[derive(Default)]
 pub(super) struct FirstSegments {
@@ -123,43 +131,40 @@ impl FirstSegments {
         self.second.clear();
     }
 
-    /// Appends a segment from the camera with this origin, direction and length, to the sphere at which the
-    /// second one starts. There must be room for it.
-    pub(super) fn push(
-        &mut self,
-        (origin, direction, length): (glam::Vec3, glam::Vec3, f64),
-        second: &ShadowRay,
-    ) {
+    /// Appends a segment from the camera to the sphere at which the second one starts. There must
+    /// be room for it.
+    pub(super) fn push(&mut self, first: &CameraSegment, second: &ShadowRay) {
         let row = self.rays.len();
-        self.rays.push(origin, direction, MISS);
+        self.rays.push(first.origin, first.direction, MISS);
         self.rays.target[row] = second.start.1;
-        self.hits.set(row, length, MISS);
+        self.hits.set(row, first.length, MISS);
         self.second.push(*second);
     }
 
-    /// Appends the rays in `lanes`, from these spheres and of these paths, with the light that arrives
+    /// Appends the rays in `lanes` of the samples of a row of queries, with the light that arrives
     /// if they are not occluded.
     pub(super) fn push_row(
         &mut self,
-        (query, sample): (&CausticQuery, &CausticSample),
-        (own, path): (&[u32; MAX_LANES], &[u32; MAX_LANES]),
+        query: &CausticQuery,
+        sample: &CausticSample,
+        row: &QueryRow,
         light: Vec3<F32x16>,
         lanes: u32,
     ) {
         let first = self.rays.len();
-        self.rays.append_packed(&Packing::new(lanes), (query.point, sample.toward), own);
+        self.rays.append_packed(&Packing::new(lanes), (query.point, sample.toward), &row.own);
         let one = |v: Vec3<F32x16>, lane: usize| -> glam::Vec3 {
             v.map(|row| row.to_array()[lane]).into()
         };
-        for (row, lane) in (first..).zip(set_bits(lanes)) {
+        for (place, lane) in (first..).zip(set_bits(lanes)) {
             let sphere = query.pairs.sphere[lane];
-            self.rays.target[row] = sphere;
-            self.hits.set(row, sample.length[0][lane], MISS);
+            self.rays.target[place] = sphere;
+            self.hits.set(place, sample.length[0][lane], MISS);
             self.second.push(ShadowRay {
                 start: (one(sample.exit, lane), sphere),
                 direction: one(sample.toward_emitter, lane),
                 end: (sample.length[1][lane], query.pairs.emitter[lane]),
-                path: path[lane],
+                path: row.path[lane],
                 light: one(light, lane),
             });
         }

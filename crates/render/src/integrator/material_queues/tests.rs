@@ -65,10 +65,10 @@ fn inside_bits_stay_with_their_rows() {
     work.sort(&world);
     for kind in MaterialKind::ALL.into_iter().filter(|&kind| kind != MaterialKind::Dielectric) {
         let Some(queue) = work.queues.of(kind) else { continue };
-        for (start, lanes) in queue.rows() {
-            for lane in set_bits(lanes) {
-                let inside = queue.inside(start) >> lane & 1 == 1;
-                assert_eq!(inside, queue.ray(start + lane) % 3 == 0);
+        for rows in queue.rows() {
+            for lane in set_bits(rows.lanes) {
+                let inside = queue.inside(rows.first) >> lane & 1 == 1;
+                assert_eq!(inside, queue.ray(rows.first + lane) % 3 == 0);
             }
         }
     }
