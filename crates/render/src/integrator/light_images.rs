@@ -231,7 +231,7 @@ fn sample_points(job: &Job, work: &mut Workspace, row: &PixelRow, light: &SeenLi
         if (path != CausticPath::Reflected) != light.through {
             continue;
         }
-        let query = casters.query((light.sphere, light.source), path, (origins, row.lanes));
+        let query = casters.query(light.sphere, light.source, path, origins, row.lanes);
         let Some(query) = query else { return };
         let sample = query.sample([u, v]);
         for lane in set_bits(sample.lanes & row.lanes) {
@@ -272,7 +272,7 @@ fn sample_point(
         CausticSource::Sphere(row) => lights.emitter_index(&world.spheres, row),
         CausticSource::Sun(sun) => Some(lights.sun_index(sun)),
     };
-    let sample = index.and_then(|index| lights.sample(world, index, (origin, MISS), u));
+    let sample = index.and_then(|index| lights.sample(world, index, origin, MISS, u));
     let Some((sample, pdf)) = sample.and_then(|sample| Some((sample, sample.pdf?))) else { return };
     let camera = camera_pdf(job, row.pixel, origin, sample.direction);
     let way = Way {

@@ -168,8 +168,8 @@ impl Shade<'_> {
         let world = self.job.world;
         let count = if world.lights.is_delta(light) { 1 } else { self.samples };
         let share = work.states.throughput(base.row) / count as f32;
-        let origin = (work.surface.point.row(base.row), work.hits.sphere[base.row]);
-        let Some(view) = world.lights.view(world, light, origin) else { return };
+        let (origin, own) = (work.surface.point.row(base.row), work.hits.sphere[base.row]);
+        let Some(view) = world.lights.view(world, light, origin, own) else { return };
         let points =
             self.job.sampler.split(&work.sampler_state(base.row), self.event(light), count);
         for (first, count) in rows(count) {

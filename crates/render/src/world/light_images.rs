@@ -289,7 +289,7 @@ fn mirrored_images(world: &World) -> Vec<LightImage> {
     let images = visible.into_par_iter().flat_map_iter(|caster| {
         (0..casters.emitter_count()).flat_map(move |emitter| {
             CausticPath::ALL.into_iter().filter_map(move |path| {
-                let (light, points) = casters.image_in((caster, emitter), path, camera.eye)?;
+                let (light, points) = casters.image_in(caster, emitter, path, camera.eye)?;
                 let circle = circle(world, points)?;
                 // The rim lies between the points.
                 Some(circle.image_of(light, circle.radius * 1.25 + 0.1))

@@ -69,6 +69,7 @@ use crate::settings::{InvalidSetting, Settings};
 use crate::shade::{MaterialId, MaterialKind, Materials};
 use crate::spheres::Spheres;
 use crate::translucency::OpticalDepth;
+use lights::EmissiveSpheres;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -206,8 +207,8 @@ impl World {
     /// # Errors
     /// Those of [`World::build`].
     pub fn build_with(scene: &Scene, builder: Builder) -> Result<Self, WorldError> {
-        let at = check::place(scene, Self::bytes_for(scene))?;
-        Self::assemble(scene, Cow::Borrowed(&scene.spheres), &at, builder)
+        let (transform, placement) = check::place(scene, Self::bytes_for(scene))?;
+        Self::assemble(scene, Cow::Borrowed(&scene.spheres), transform, placement, builder)
     }
 
     /// Builds the world of a scene whose spheres are not needed afterwards: their memory is freed
@@ -217,9 +218,9 @@ impl World {
     /// Those of [`World::build`]; after all except [`WorldError::Glass`] the scene still has its
     /// spheres.
     pub fn build_taking(scene: &mut Scene, builder: Builder) -> Result<Self, WorldError> {
-        let at = check::place(scene, Self::additional_bytes(scene))?;
+        let (transform, placement) = check::place(scene, Self::additional_bytes(scene))?;
         let spheres = std::mem::take(&mut scene.spheres);
-        Self::assemble(scene, Cow::Owned(spheres), &at, builder)
+        Self::assemble(scene, Cow::Owned(spheres), transform, placement, builder)
     }
 
     /// Returns the peak bytes that [`World::build_taking`] allocates in addition to those of the scene.
@@ -239,10 +240,12 @@ impl World {
     fn assemble(
         scene: &Scene,
         from: Cow<scene::Spheres>,
-        at: &(Transform, Placement),
+        transform: Transform,
+        placement: Placement,
         builder: Builder,
     ) -> Result<Self, WorldError> {
-        Ok(Self::complete(scene, Parts::build(scene, from, at, builder)?))
+        let parts = Parts::build(scene, from, transform, placement, builder)?;
+        Ok(Self::complete(scene, parts))
     }
 
     /// Completes the spheres and their tree by all that follows from them and from the rest of the
@@ -263,13 +266,8 @@ impl World {
         let environment = Environment::build(&scene.environment, &scene.look);
         let ground =
             scene.ground.as_ref().map(|ground| Ground::build(ground, &transform, &materials));
-        let lights = Lights::build(
-            scene,
-            (&transform, &cut),
-            (&spheres, &appearance),
-            &materials,
-            &environment,
-        );
+        let emissive = EmissiveSpheres::find(&spheres, &cut, &appearance, &materials);
+        let lights = Lights::build(scene, &transform, &spheres, emissive, &environment);
         let mut world = Self {
             transform,
             placement,

@@ -39,24 +39,24 @@ impl Parts {
     pub(super) fn build(
         scene: &Scene,
         from: Cow<scene::Spheres>,
-        (transform, placement): &(Transform, Placement),
+        transform: Transform,
+        placement: Placement,
         builder: Builder,
     ) -> Result<Self, WorldError> {
         let given = from.len();
         let materials = Materials::build(&scene.materials);
         let WorldSpheres { mut spheres, appearance, shown, hidden } =
-            WorldSpheres::build(from, &scene.slices, transform);
+            WorldSpheres::build(from, &scene.slices, &transform);
         let placed = spheres.len();
         let bvh = build(&mut spheres, builder);
         let appearance = Appearance::build(appearance, &spheres.id, &materials);
-        cut::refuse_glass(&Cut::build(&scene.slices, transform), &spheres, &appearance)?;
+        cut::refuse_glass(&Cut::build(&scene.slices, &transform), &spheres, &appearance)?;
         let camera_visible = CameraVisible::build(&hidden, &spheres, builder);
         let omitted = OmittedSpheres {
             cut_away: (given - shown) as u64,
             vanished: (shown - placed) as u64,
             hidden: (placed - spheres.len()) as u64,
         };
-        let (transform, placement) = (*transform, *placement);
         Ok(Self { transform, placement, spheres, bvh, appearance, camera_visible, omitted })
     }
 

@@ -81,7 +81,7 @@ pub(super) fn enqueue_queries<M: Material>(
     let (draw, mut place, mut lanes) =
         (LightDraw::light_row(numbers), [numbers[0], numbers[1]], lanes);
     for number in 0.. {
-        let chosen = casters.choose_row(at, draw, (number, lanes));
+        let chosen = casters.choose_row(at, draw, number, lanes);
         lanes = chosen.lanes;
         if lanes == 0 {
             return;

@@ -76,7 +76,8 @@ impl CausticPath {
 /// outside over inside. Both points are outside, and relative to the center.
 #[inline(always)]
 pub(crate) fn connect<D: Doubles>(
-    (radius, index): (D, D),
+    radius: D,
+    index: D,
     [receiver, emitter]: [Vec3<D>; 2],
     paths: PathMasks<D>,
 ) -> Connection<D> {

@@ -120,8 +120,7 @@ impl<L: Lanes> CasterNodes<L> {
         let reflectance = (grazing * grazing * grazing).mul_add(self.rise, self.reflected);
         let reflected = level * reflectance * parted;
         let spread = (self.extent * (inverse + axis.inverse)).min(one);
-        let light = (level * self.transmitted, axis.sine2);
-        let through = self.through(ends, (forward, spread), light);
+        let through = self.through(ends, forward, spread, level * self.transmitted, axis.sine2);
         // A leaf that contains the point has no light for it.
         let outside = near.lt(one) | zero.lt(self.extent);
         let paths = [reflected, through[0], through[1], through[2]];
@@ -133,7 +132,7 @@ impl<L: Lanes> CasterNodes<L> {
 
     /// Estimates the contributions of the paths through glass.
     #[inline(always)]
-    fn through(&self, ends: L, (forward, spread): (L, L), (level, sine2): (L, L)) -> [L; 3] {
+    fn through(&self, ends: L, forward: L, spread: L, level: L, sine2: L) -> [L; 3] {
         let (zero, one, two) = (L::splat(0.0), L::splat(1.0), L::splat(2.0));
         // The direction to the sphere of a cluster that is turned most favorably.
         let along = (one - spread * spread).sqrt();

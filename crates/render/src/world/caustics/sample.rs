@@ -126,6 +126,24 @@ pub(crate) struct CausticHit {
     pub(crate) rate: Option<f64>,
 }
 
+/// Half a row of caustics to sample, in double precision; places are relative to the centers of the
+/// specular spheres.
+struct HalfQuery {
+    receiver: Vec3<F64x8>,
+    /// Radius of the specular sphere.
+    radius: F64x8,
+    /// Its index of refraction outside over that inside; 0 for a mirror.
+    index: F64x8,
+    /// Center of the emitter.
+    offset: Vec3<F64x8>,
+    emitter_radius: F64x8,
+    /// Direction in which a point of the emitter is seen.
+    seen: Vec3<F64x8>,
+    /// Density of that direction.
+    pdf: F64x8,
+    paths: PathMasks<F64x8>,
+}
+
 /// Samples of half a row, in double precision.
 struct HalfRow {
     toward: Vec3<F64x8>,
@@ -151,10 +169,16 @@ impl CausticQuery {
         let [low, high] = [0, 1].map(|half| {
             let part = |column: &[f64; MAX_LANES]| F64x8::from(&column[8 * half..8 * half + 8]);
             let vector = |[x, y, z]: &[[f64; MAX_LANES]; 3]| Vec3::new(part(x), part(y), part(z));
-            let receiver = point[half] - vector(&pairs.center);
-            let emitter = (vector(&pairs.offset), part(&pairs.emitter_radius));
-            let sphere = (part(&pairs.radius), part(&pairs.index));
-            sample_half(receiver, (sphere, emitter), (seen[half], pdf[half]), self.paths(half))
+            sample_half(&HalfQuery {
+                receiver: point[half] - vector(&pairs.center),
+                radius: part(&pairs.radius),
+                index: part(&pairs.index),
+                offset: vector(&pairs.offset),
+                emitter_radius: part(&pairs.emitter_radius),
+                seen: seen[half],
+                pdf: pdf[half],
+                paths: self.paths(half),
+            })
         });
         let center = |i: usize| F32x16::new(pairs.center[i].map(|x| x as f32));
         let lengths = |i: usize| {
@@ -194,25 +218,21 @@ impl CausticQuery {
     }
 }
 
-/// Connects receivers, relative to the center of a sphere, with the points of emitters that are visible
-/// from the center in directions `seen`.
+/// Connects receivers with the points of emitters that are visible from the centers of the specular
+/// spheres.
 #[inline(always)]
-fn sample_half(
-    receiver: Vec3<F64x8>,
-    (sphere, (offset, radius)): ((F64x8, F64x8), (Vec3<F64x8>, F64x8)),
-    (seen, pdf): (Vec3<F64x8>, F64x8),
-    paths: PathMasks<F64x8>,
-) -> HalfRow {
+fn sample_half(query: &HalfQuery) -> HalfRow {
+    let HalfQuery { receiver, radius, index, offset, emitter_radius, seen, pdf, paths } = *query;
     let (zero, one) = (F64x8::splat(0.0), F64x8::splat(1.0));
     let seen = seen * seen.inverse_length();
     let middle = offset.dot_unfused(seen);
     let off = offset - seen * middle;
-    let half2 = radius * radius - off.dot_unfused(off);
+    let half2 = emitter_radius * emitter_radius - off.dot_unfused(off);
     let distance = middle - Doubles::select(zero.lt(half2), half2, zero).sqrt();
     let emitter = seen * distance;
-    let outside = (sphere.0 * sphere.0).lt(receiver.dot_unfused(receiver));
-    let connection = connect(sphere, [receiver, emitter], paths);
-    let outward = (emitter - offset) * (one / radius);
+    let outside = (radius * radius).lt(receiver.dot_unfused(receiver));
+    let connection = connect(radius, index, [receiver, emitter], paths);
+    let outward = (emitter - offset) * (one / emitter_radius);
     let leaving = -outward.dot_unfused(seen);
     let arriving = -outward.dot_unfused(connection.toward_emitter);
     let pdf = pdf * leaving * connection.spread / arriving;
@@ -224,7 +244,7 @@ fn sample_half(
         toward_emitter: connection.toward_emitter,
         length: connection.length,
         incidence: connection.at.cosine,
-        kept: fresnel_factor(connection.at, sphere.1, paths.through),
+        kept: fresnel_factor(connection.at, index, paths.through),
         pdf,
         found: found.bits(),
     }
@@ -259,13 +279,15 @@ impl CausticCasters {
         row
     }
 
-    /// Returns a query for samples of one emitter by one sphere and path, from a row of points; `None` if the
-    /// emitter is large as seen from the sphere.
+    /// Returns a query for samples of one emitter by one sphere and path, from points in `lanes`;
+    /// `None` if the emitter is large as seen from the sphere.
     pub(crate) fn query(
         &self,
-        (sphere, source): (u32, CausticSource),
+        sphere: u32,
+        source: CausticSource,
         path: CausticPath,
-        (point, lanes): (Vec3<F32x16>, u32),
+        point: Vec3<F32x16>,
+        lanes: u32,
     ) -> Option<CausticQuery> {
         let emitter = self.emitters.iter().position(|emitter| emitter.source == source)?;
         let pair = self.pair(self.index_of(sphere)?, emitter)?;
@@ -278,7 +300,8 @@ impl CausticCasters {
     /// seen; `None` if it is not seen in this way, or is large as seen from the sphere.
     pub(crate) fn image_in(
         &self,
-        (caster, emitter): (usize, usize),
+        caster: usize,
+        emitter: usize,
         path: CausticPath,
         eye: DVec3,
     ) -> Option<(SeenLight, Vec<DVec3>)> {
@@ -288,8 +311,8 @@ impl CausticCasters {
             return None;
         }
         let point = eye.as_vec3();
-        let points = (Vec3::splat(point.x, point.y, point.z), (1 << MAX_LANES) - 1);
-        let query = self.query((caster.row, source), path, points)?;
+        let point = Vec3::splat(point.x, point.y, point.z);
+        let query = self.query(caster.row, source, path, point, (1 << MAX_LANES) - 1)?;
         // A grid over the emitter, up to its rim.
         let place = |step: usize| (step as f32 + 0.05) / 3.11;
         let [u, v] = [std::array::from_fn(|i| place(i % 4)), std::array::from_fn(|i| place(i / 4))];
@@ -336,7 +359,7 @@ impl CausticCasters {
         let outward = (end - pair.offset) / pair.emitter.radius;
         let leaving = -outward.dot(end) / distance[1];
         let arriving = -outward.dot(found.toward_emitter.as_dvec3());
-        let of_surface = || self.rate(&found.start, (emitter, caster), path);
+        let of_surface = || self.rate(&found.start, emitter, caster, path);
         let rate = found.rate.unwrap_or_else(of_surface);
         let cone = f64::from(pair.cone.pdf());
         let density = rate * cone * leaving * sphere.spread(at, &turn) / arriving;

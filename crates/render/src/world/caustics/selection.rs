@@ -48,7 +48,8 @@ impl CausticCasters {
         &self,
         at: &ReceiverRow,
         draw: [F64x8; 2],
-        (number, lanes): (u32, u32),
+        number: u32,
+        lanes: u32,
     ) -> CausticChoices {
         let draw = draw.map(F64x8::to_array);
         let (mut emitter, mut code) = ([0; MAX_LANES], [0; MAX_LANES]);
@@ -85,9 +86,9 @@ impl CausticCasters {
         let mut draw = left / samples;
         let mut rate = f64::from(probability) * samples;
         loop {
-            let (lane, rest) = chances.all.pick(children.1, draw);
+            let (lane, rest) = chances.all.pick(children.count, draw);
             rate *= chances.all.of(lane);
-            let node = children.0 + lane;
+            let node = children.first + lane;
             if let Some(caster) = self.tree.leaf(node) {
                 let (path, share) = chances.pick_path(lane, rest)?;
                 return Some(CausticChoice { emitter, caster, path, rate: rate * share });
@@ -110,7 +111,8 @@ impl CausticCasters {
     pub(super) fn rate(
         &self,
         at: &Receiver,
-        (emitter, caster): (usize, usize),
+        emitter: usize,
+        caster: usize,
         path: CausticPath,
     ) -> f64 {
         let mut rate = f64::from(self.emitter_sampler.probability_around(at, emitter));
@@ -126,7 +128,7 @@ impl CausticCasters {
             if !RESOLVED.contains(&chances.all.total) {
                 return 0.0;
             }
-            let lane = node as usize - children.0;
+            let lane = node as usize - children.first;
             rate *= chances.all.of(lane);
             if self.tree.leaf(node as usize).is_some() {
                 rate *= chances.share(lane, path);

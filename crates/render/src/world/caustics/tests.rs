@@ -45,7 +45,7 @@ impl Setting {
 
     fn connect(&self, path: CausticPath) -> Connection<f64> {
         let places = [self.receiver, self.emitter].map(Vec3::from);
-        connect((self.radius, self.index), places, paths(path))
+        connect(self.radius, self.index, places, paths(path))
     }
 
     fn sphere(&self, path: CausticPath) -> SpecularSphere<f64> {
@@ -220,10 +220,11 @@ fn rows_equal_their_lanes() {
             let axis = |i: usize| column(&|setting| of(setting)[i]);
             Vec3::new(axis(0), axis(1), axis(2))
         };
-        let sphere = (column(&|s| s.radius), column(&|s| s.index));
+        let (radius, index) = (column(&|s| s.radius), column(&|s| s.index));
         let places = [place(|s| s.receiver), place(|s| s.emitter)];
         for path in CausticPath::ALL {
-            let Connection { toward, spread, found, .. } = connect(sphere, places, paths(path));
+            let Connection { toward, spread, found, .. } =
+                connect(radius, index, places, paths(path));
             for (lane, setting) in settings.iter().enumerate() {
                 let one = setting.connect(path);
                 assert_eq!(found.bits() >> lane & 1 == 1, one.found);

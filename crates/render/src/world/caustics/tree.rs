@@ -8,7 +8,7 @@ use super::estimate::{ByPath, CasterNodes, EmitterView};
 use crate::lanes::{F32x16, Lanes, Mask, first_lanes, set_bits};
 use crate::ray::MISS;
 use crate::vec3::Vec3;
-use crate::world::lights::{BRANCHES, Chances, LightBounds, ROOT, Receiver, Tree};
+use crate::world::lights::{BRANCHES, Chances, LightBounds, ROOT, Receiver, Siblings, Tree};
 
 /// Specular spheres and clusters of them, in columns.
 #[derive(Clone, Debug, Default)]
@@ -118,9 +118,9 @@ impl CasterTree {
         }
     }
 
-    /// Returns the first child of a node or [`ROOT`], and the number of children.
+    /// Returns the children of a node or [`ROOT`].
     #[inline(always)]
-    pub(super) fn children(&self, node: u32) -> (usize, usize) {
+    pub(super) fn children(&self, node: u32) -> Siblings {
         self.nodes.below(node)
     }
 
@@ -143,7 +143,7 @@ impl CasterTree {
 
     /// Returns the number of the root's children.
     pub(super) fn top(&self) -> u32 {
-        self.nodes.below(ROOT).1 as u32
+        self.nodes.below(ROOT).count as u32
     }
 
     /// Returns the number of levels below the root.
@@ -157,16 +157,17 @@ impl CasterTree {
         self.nodes.parent[node as usize]
     }
 
-    /// Estimates the contributions of the `count` nodes from `first` on at a receiver. Estimates of
-    /// clusters that contain the receiver are sums over their children.
+    /// Estimates the contributions of nodes at a receiver. Estimates of clusters that contain the
+    /// receiver are sums over their children.
     #[inline(always)]
     pub(super) fn chances(
         &self,
-        (first, count): (usize, usize),
+        nodes: Siblings,
         at: &Receiver,
         emitter: &EmitterView,
     ) -> NodeChances {
-        let (each, mut sum, vague) = self.estimates((first, count), at, emitter);
+        let Siblings { first, count } = nodes;
+        let (each, mut sum, vague) = self.estimates(nodes, at, emitter);
         for lane in set_bits(vague & first_lanes(count)) {
             sum[lane] = self.refined(self.children((first + lane) as u32), at, emitter);
         }
@@ -174,12 +175,12 @@ impl CasterTree {
     }
 
     /// Returns the sum of the estimates of some nodes.
-    fn refined(&self, nodes: (usize, usize), at: &Receiver, emitter: &EmitterView) -> f32 {
+    fn refined(&self, nodes: Siblings, at: &Receiver, emitter: &EmitterView) -> f32 {
         let (_, mut sum, vague) = self.estimates(nodes, at, emitter);
-        for lane in set_bits(vague & first_lanes(nodes.1)) {
-            sum[lane] = self.refined(self.children((nodes.0 + lane) as u32), at, emitter);
+        for lane in set_bits(vague & first_lanes(nodes.count)) {
+            sum[lane] = self.refined(self.children((nodes.first + lane) as u32), at, emitter);
         }
-        sum[..nodes.1].iter().sum()
+        sum[..nodes.count].iter().sum()
     }
 
     /// Estimates the contributions of nodes at a receiver, by kind of path and in total; also returns the
@@ -187,10 +188,11 @@ impl CasterTree {
     #[inline(always)]
     fn estimates(
         &self,
-        (first, count): (usize, usize),
+        nodes: Siblings,
         at: &Receiver,
         emitter: &EmitterView,
     ) -> (ByPath<[f32; BRANCHES]>, [f32; BRANCHES], u32) {
+        let Siblings { first, count } = nodes;
         let row = |column: &[f32]| F32x16::load(&column[first..]);
         let splat = |v: glam::Vec3| Vec3::splat(v.x, v.y, v.z);
         let nodes = CasterNodes {

@@ -16,7 +16,7 @@ pub(super) use sampler::LightSampler;
 pub use sphere_light::Disc;
 pub use sun::Sun;
 pub use tree::Receiver;
-pub(super) use tree::{BRANCHES, Chances, LightBounds, ROOT, Tree, WITHIN, horizon};
+pub(super) use tree::{BRANCHES, Chances, LightBounds, ROOT, Siblings, Tree, WITHIN, horizon};
 
 use super::appearance::Appearance;
 use super::environment::{Environment, Picture};
@@ -92,15 +92,22 @@ enum Light {
     Sky(usize),
 }
 
+/// Emissive spheres that are sampled.
+#[derive(Default)]
+pub(super) struct EmissiveSpheres {
+    rows: Vec<u32>,
+    radiance: Vec<Rgb>,
+}
+
 impl Lights {
     pub(super) fn build(
         scene: &Scene,
-        (transform, cut): (&Transform, &Cut),
-        (spheres, appearance): (&Spheres, &Appearance),
-        materials: &Materials,
+        transform: &Transform,
+        spheres: &Spheres,
+        emissive: EmissiveSpheres,
         environment: &Environment,
     ) -> Self {
-        let (emitters, radiance) = emitters((spheres, cut), appearance, materials);
+        let EmissiveSpheres { rows: emitters, radiance } = emissive;
         let (mut points, mut suns) = (Vec::new(), Vec::new());
         for light in &scene.lights {
             match *light {
@@ -193,14 +200,15 @@ impl Lights {
         &'a self,
         world: &'a World,
         index: usize,
-        (origin, own): (Vec3, u32),
+        origin: Vec3,
+        own: u32,
     ) -> Option<LightView<'a>> {
         match self.light(index) {
             Light::Emitter(i) if self.emitters[i] == own => None,
             Light::Emitter(i) => {
                 let row = self.emitters[i] as usize;
-                let from = (origin, self.reach);
-                Disc::new(&world.spheres, row, self.radiance[i], from).map(LightView::Disc)
+                Disc::new(&world.spheres, row, self.radiance[i], origin, self.reach)
+                    .map(LightView::Disc)
             }
             Light::Point(i) => self.points[i].sample(origin).map(LightView::Delta),
             Light::Sun(i) => Some(LightView::Sun(&self.suns[i])),
@@ -216,12 +224,13 @@ impl Lights {
         &self,
         world: &World,
         index: usize,
-        from: (Vec3, u32),
+        origin: Vec3,
+        own: u32,
         u: [f32; 2],
     ) -> Option<LightSample> {
         match self.light(index) {
             Light::Sun(i) => Some(self.suns[i].sample(u)),
-            _ => self.view(world, index, from)?.sample(u),
+            _ => self.view(world, index, origin, own)?.sample(u),
         }
     }
 
@@ -238,7 +247,7 @@ impl Lights {
         let Some(index) = self.emitter_index(spheres, row).filter(|_| row != at.own) else {
             return 0.0;
         };
-        match view_sphere(spheres, row as usize, (at.point, self.reach)) {
+        match view_sphere(spheres, row as usize, at.point, self.reach) {
             Some((seen, _)) if diffuse && !seen.close => f32::INFINITY,
             Some((_, cone)) => self.probability(at, index) * cone.pdf(),
             None => 0.0,
@@ -270,27 +279,33 @@ impl Lights {
     }
 }
 
-/// Returns rows and radiance of the emissive spheres that are not cut; only BSDF samples find the light
-/// of the others.
-fn emitters(
-    (spheres, cut): (&Spheres, &Cut),
-    appearance: &Appearance,
-    materials: &Materials,
-) -> (Vec<u32>, Vec<Rgb>) {
-    if materials.emitter.is_empty() {
-        return Default::default();
+impl EmissiveSpheres {
+    /// Finds the emissive spheres that are not cut; only BSDF samples find the light of the others.
+    pub(super) fn find(
+        spheres: &Spheres,
+        cut: &Cut,
+        appearance: &Appearance,
+        materials: &Materials,
+    ) -> Self {
+        if materials.emitter.is_empty() {
+            return Self::default();
+        }
+        let is_uncut = |row: u32| {
+            let (center, radius) = spheres.exact(row as usize);
+            !cut.divides(center, radius)
+        };
+        let radiance = |row: u32| {
+            let id = appearance.material.row(row as usize);
+            (id.kind() == MaterialKind::Emitter).then(|| materials.emitter[id.row()].radiance)
+        };
+        let emits =
+            |row: u32| Some((row, radiance(row).filter(|&radiance| radiance != Rgb::ZERO)?));
+        let all = 0..spheres.len() as u32;
+        let emitters = all.filter(|&row| emits(row).is_some() && is_uncut(row));
+        let emitters = spheres.first_of_equals(emitters).into_iter();
+        let (rows, radiance) = emitters.filter_map(emits).unzip();
+        Self { rows, radiance }
     }
-    let is_uncut = |row: u32| {
-        let (center, radius) = spheres.exact(row as usize);
-        !cut.divides(center, radius)
-    };
-    let radiance = |row: u32| {
-        let id = appearance.material.row(row as usize);
-        (id.kind() == MaterialKind::Emitter).then(|| materials.emitter[id.row()].radiance)
-    };
-    let emits = |row: u32| Some((row, radiance(row).filter(|&radiance| radiance != Rgb::ZERO)?));
-    let emitters = (0..spheres.len() as u32).filter(|&row| emits(row).is_some() && is_uncut(row));
-    spheres.first_of_equals(emitters).into_iter().filter_map(emits).unzip()
 }
 
 impl LightView<'_> {

@@ -28,11 +28,13 @@ struct PointView<D: Doubles> {
     apart: D::Mask,
 }
 
-/// Returns a light as seen from a point; `scale` is that of the falloff, 0 if there is none.
+/// Returns a light, by position and intensity, as seen from a point; `scale` is that of the
+/// falloff, 0 if there is none.
 #[inline(always)]
 fn view<D: Doubles>(
     origin: Vec3<D>,
-    (position, intensity): (Vec3<D>, Vec3<D>),
+    position: Vec3<D>,
+    intensity: Vec3<D>,
     scale: D,
 ) -> PointView<D> {
     let (zero, one) = (D::splat(0.0), D::splat(1.0));
@@ -51,9 +53,9 @@ fn view<D: Doubles>(
 impl Point {
     /// Samples the light at a point; `None` at the light itself.
     pub(super) fn sample(&self, origin: glam::Vec3) -> Option<LightSample> {
-        let light = (self.position.into(), self.intensity.as_dvec3().into());
-        let seen: PointView<f64> =
-            view(origin.as_dvec3().into(), light, self.falloff.unwrap_or(0.0));
+        let (position, intensity) = (self.position.into(), self.intensity.as_dvec3().into());
+        let scale = self.falloff.unwrap_or(0.0);
+        let seen: PointView<f64> = view(origin.as_dvec3().into(), position, intensity, scale);
         seen.apart.then(|| LightSample {
             direction: seen.direction.map(|x| x as f32).into(),
             t: seen.distance,
@@ -78,7 +80,7 @@ impl PointRow {
     fn view(&self, origin: Vec3<F64x8>, first: usize) -> PointView<F64x8> {
         let part = |column: &[f64; ROW]| F64x8::from(&column[first..first + 8]);
         let vector = |[x, y, z]: &[[f64; ROW]; 3]| Vec3::new(part(x), part(y), part(z));
-        view(origin, (vector(&self.position), vector(&self.intensity)), part(&self.scale))
+        view(origin, vector(&self.position), vector(&self.intensity), part(&self.scale))
     }
 }
 
@@ -87,8 +89,8 @@ impl Point {
     #[inline(always)]
     fn view_row(&self, origin: Vec3<F64x8>) -> PointView<F64x8> {
         let splat = |v: DVec3| Vec3::from(v).map(F64x8::splat);
-        let light = (splat(self.position), splat(self.intensity.as_dvec3()));
-        view(origin, light, F64x8::splat(self.falloff.unwrap_or(0.0)))
+        let (position, intensity) = (splat(self.position), splat(self.intensity.as_dvec3()));
+        view(origin, position, intensity, F64x8::splat(self.falloff.unwrap_or(0.0)))
     }
 }
 
@@ -114,7 +116,8 @@ impl Lights {
     pub(super) fn sample_points(
         &self,
         at: &ReceiverRow,
-        (light, lanes): (&[u32; ROW], u32),
+        light: &[u32; ROW],
+        lanes: u32,
         first: usize,
     ) -> LightRow {
         let origin = at.point.halves();

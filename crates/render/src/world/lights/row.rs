@@ -75,7 +75,7 @@ impl LightRow {
     /// Samples a part of a picture of the sky in `lanes`, from two random numbers in [0, 1) each. Lanes without
     /// light get no sample.
     #[inline(always)]
-    fn sky((picture, part): (&Picture, usize), u: [F32x16; 2], lanes: u32) -> Self {
+    fn sky(picture: &Picture, part: usize, u: [F32x16; 2], lanes: u32) -> Self {
         let SkySamples { direction, radiance, pdf, lanes } = picture.sample(part, u, lanes);
         Self {
             weight: radiance.map(|channel| channel / pdf),
@@ -181,12 +181,12 @@ impl Lights {
         let (light, probability) = match &self.sampler {
             LightSampler::None => return LightRow::dark(),
             LightSampler::Single => {
-                return self.sample_lights(world, at, (&[0; ROW], lanes), [u, v]);
+                return self.sample_lights(world, at, &[0; ROW], lanes, [u, v]);
             }
             LightSampler::Tree(tree) => tree.choose_row(at, draw(), lanes),
             LightSampler::Table(_) => self.choose_each(at, draw()),
         };
-        let samples = self.sample_lights(world, at, (&light, lanes), [u, v]);
+        let samples = self.sample_lights(world, at, &light, lanes, [u, v]);
         samples.chosen(F32x16::new(probability))
     }
 
@@ -203,7 +203,7 @@ impl Lights {
     ) -> LightRow {
         let (count, middle) = (self.count_without_sky(), [F32x16::splat(0.0); 2]);
         if count <= MAX_MIDDLES {
-            return self.sample_lights(world, at, (&[index as u32; ROW], lanes), middle);
+            return self.sample_lights(world, at, &[index as u32; ROW], lanes, middle);
         }
         let draw = [F64x8::splat((index as f64 + 0.5) / MAX_MIDDLES as f64); 2];
         let (light, probability) = match &self.sampler {
@@ -212,17 +212,18 @@ impl Lights {
         };
         let others = set_bits(lanes).filter(|&lane| (light[lane] as usize) < count);
         let lanes = others.fold(0, |lanes, lane| lanes | 1 << lane);
-        let samples = self.sample_lights(world, at, (&light, lanes), middle);
+        let samples = self.sample_lights(world, at, &light, lanes, middle);
         samples.chosen(F32x16::new(probability) * F32x16::splat(MAX_MIDDLES as f32))
     }
 
-    /// Samples the lights that were chosen.
+    /// Samples the lights that were chosen for the receivers in `lanes`.
     #[inline(never)]
     fn sample_lights(
         &self,
         world: &World,
         at: &ReceiverRow,
-        (light, lanes): (&[u32; ROW], u32),
+        light: &[u32; ROW],
+        lanes: u32,
         u: [F32x16; 2],
     ) -> LightRow {
         let lanes_of = |kind: Range<usize>| {
@@ -234,16 +235,16 @@ impl Lights {
         let points = lanes_of(emitters..emitters + self.points.len());
         let mut row = LightRow::dark();
         if discs != 0 {
-            row = self.sample_discs(&world.spheres, at, (light, discs), u);
+            row = self.sample_discs(&world.spheres, at, light, discs, u);
         }
         if points != 0 {
-            row = row.or(&self.sample_points(at, (light, points), emitters));
+            row = row.or(&self.sample_points(at, light, points, emitters));
         }
         let sky = self.len() - self.sky_parts;
         for part in 0..self.sky_parts {
             let lanes = lanes_of(sky + part..sky + part + 1);
             if let Some(picture) = world.environment.picture().filter(|_| lanes != 0) {
-                row = row.or(&LightRow::sky((picture, part), u, lanes));
+                row = row.or(&LightRow::sky(picture, part, u, lanes));
             }
         }
         let others = lanes_of(emitters + self.points.len()..sky);
@@ -254,7 +255,7 @@ impl Lights {
         row.with(set_bits(others).filter_map(|lane| {
             let Receiver { point, own, .. } = at.receiver(lane);
             let light = light[lane] as usize;
-            Some((lane, self.sample(world, light, (point, own), [u[lane], v[lane]])?))
+            Some((lane, self.sample(world, light, point, own, [u[lane], v[lane]])?))
         }))
     }
 
@@ -300,7 +301,7 @@ impl LightView<'_> {
         match self {
             Self::Disc(disc) => disc.sample_row(u, lanes),
             Self::Sun(sun) => sun.sample_row(u, lanes),
-            Self::Sky(picture, part) => LightRow::sky((picture, *part), u, lanes),
+            Self::Sky(picture, part) => LightRow::sky(picture, *part, u, lanes),
             Self::Delta(sample) => LightRow::dark().with((0..count).map(|lane| (lane, *sample))),
         }
     }
@@ -312,10 +313,10 @@ impl Disc {
         let direction = self.basis.row_to_world(self.cone.sample_row(u));
         let splat = |v: glam::DVec3| [Vec3::from(v).map(F64x8::splat); 2];
         let origin = Vec3::from(self.origin).map(F32x16::splat);
-        let sphere = (&splat(self.center), &[F64x8::splat(self.radius); 2]);
+        let (center, radius) = (splat(self.center), [F64x8::splat(self.radius); 2]);
         LightRow {
             direction,
-            t: distances((origin, direction), sphere, lanes),
+            t: distances(origin, direction, &center, &radius, lanes),
             target: [self.row; ROW],
             weight: every(self.weight),
             pdf: F32x16::splat(self.cone.pdf()),

@@ -37,7 +37,8 @@ pub(super) struct SphereView<D: Doubles> {
 #[inline(always)]
 pub(super) fn toward<D: Doubles>(
     origin: Vec3<D>,
-    (center, radius): (Vec3<D>, D),
+    center: Vec3<D>,
+    radius: D,
     reach: f64,
 ) -> SphereView<D> {
     let toward = center - origin;
@@ -51,13 +52,15 @@ pub(super) fn toward<D: Doubles>(
 }
 
 /// Returns sphere `row` as seen from `origin`, and the cone that it fills; `None` from inside.
+/// Close is nearer than `reach` radii.
 pub(super) fn view_sphere(
     spheres: &Spheres,
     row: usize,
-    (origin, reach): (glam::Vec3, f64),
+    origin: glam::Vec3,
+    reach: f64,
 ) -> Option<(SphereView<f64>, Cone)> {
     let (center, radius) = (spheres.center(row).as_dvec3(), f64::from(spheres.radius(row)));
-    let seen = toward(origin.as_dvec3().into(), (center.into(), radius), reach);
+    let seen = toward(origin.as_dvec3().into(), center.into(), radius, reach);
     let cone = Cone::toward_sphere(seen.distance2, radius)?;
     Some((seen, cone))
 }
@@ -69,9 +72,10 @@ impl Disc {
         spheres: &Spheres,
         row: usize,
         radiance: Rgb,
-        (origin, reach): (glam::Vec3, f64),
+        origin: glam::Vec3,
+        reach: f64,
     ) -> Option<Self> {
-        let (seen, cone) = view_sphere(spheres, row, (origin, reach))?;
+        let (seen, cone) = view_sphere(spheres, row, origin, reach)?;
         Some(Self {
             row: row as u32,
             basis: Basis::new(seen.direction.map(|x| x as f32).into()),
@@ -90,7 +94,7 @@ impl Disc {
         let direction = self.basis.to_world(self.cone.sample(u));
         LightSample {
             direction,
-            t: distance((self.origin, direction), (self.center, self.radius)),
+            t: distance(self.origin, direction, self.center, self.radius),
             target: self.row,
             weight: self.weight,
             pdf: Some(self.cone.pdf()),
@@ -102,8 +106,10 @@ impl Disc {
 /// Returns the distance from a surface to a sphere, by center and radius. At the edge of the disc
 /// rounding may make the ray miss: then, the distance to the ray's nearest point.
 pub(super) fn distance(
-    (origin, direction): (glam::Vec3, glam::Vec3),
-    (center, radius): (DVec3, f64),
+    origin: glam::Vec3,
+    direction: glam::Vec3,
+    center: DVec3,
+    radius: f64,
 ) -> f64 {
     let ray = ExactRay::new(origin, direction, true);
     match intersect::confirm(&ray, center, radius, || false) {
@@ -128,14 +134,15 @@ impl Lights {
         &self,
         spheres: &Spheres,
         at: &ReceiverRow,
-        (light, lanes): (&[u32; ROW], u32),
+        light: &[u32; ROW],
+        lanes: u32,
         u: [F32x16; 2],
     ) -> LightRow {
         let row = self.gather(spheres, light, lanes);
         let (origin, center) = (at.point.halves(), row.center().halves());
         let radius = widen(F32x16::new(row.radius));
-        let low = toward(origin[0], (center[0], radius[0]), self.reach);
-        let high = toward(origin[1], (center[1], radius[1]), self.reach);
+        let low = toward(origin[0], center[0], radius[0], self.reach);
+        let high = toward(origin[1], center[1], radius[1], self.reach);
         let (cone, outside) = Cone::toward_spheres([low.distance2, high.distance2], radius);
         let axis = Vec3::narrow([low.direction, high.direction]);
         let direction = Bases::about(axis).to_world(cone.sample_each(u));
@@ -144,7 +151,7 @@ impl Lights {
         let pdf = cone.pdfs();
         LightRow {
             direction,
-            t: distances((at.point, direction), (&center, &radius), lanes),
+            t: distances(at.point, direction, &center, &radius, lanes),
             target: row.target,
             weight: row.radiance().map(|channel| channel / pdf),
             pdf,
@@ -205,8 +212,10 @@ fn columns([x, y, z]: &[[f32; ROW]; 3]) -> Vec3<F32x16> {
 /// Returns the [`distance`] from a surface to a sphere in each of `lanes`.
 #[inline(always)]
 pub(super) fn distances(
-    (origin, direction): (Vec3<F32x16>, Vec3<F32x16>),
-    (center, radius): (&[Vec3<F64x8>; 2], &[F64x8; 2]),
+    origin: Vec3<F32x16>,
+    direction: Vec3<F32x16>,
+    center: &[Vec3<F64x8>; 2],
+    radius: &[F64x8; 2],
     lanes: u32,
 ) -> [f64; ROW] {
     let (from, toward) = (origin.halves(), direction.halves());
@@ -228,8 +237,8 @@ pub(super) fn distances(
             let lane = 8 * half + i;
             let one = |v: Vec3<F32x16>| v.map(|row| row.to_array()[lane]).into();
             let at = center[half].map(|row| row.to_array()[i]);
-            let sphere = (DVec3::new(at.x, at.y, at.z), radius[half].to_array()[i]);
-            t[lane] = distance((one(origin), one(direction)), sphere);
+            let (center, radius) = (DVec3::new(at.x, at.y, at.z), radius[half].to_array()[i]);
+            t[lane] = distance(one(origin), one(direction), center, radius);
         }
     }
     t

@@ -95,6 +95,15 @@ pub(in crate::world) struct Tree {
     pub(in crate::world) leaf: Vec<u32>,
 }
 
+/// The children of a node, which are neighbors.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::world) struct Siblings {
+    /// The first.
+    pub(in crate::world) first: usize,
+    /// Their number.
+    pub(in crate::world) count: usize,
+}
+
 /// The root, which has no row.
 pub(in crate::world) const ROOT: u32 = u32::MAX;
 
@@ -163,27 +172,28 @@ impl Tree {
     // Not inlined: the case of a single light should not have to jump around it.
     #[inline(never)]
     pub(super) fn choose<F: Facing>(&self, at: &Receiver, draw: f64) -> (usize, f32, f64) {
-        self.descend::<F>((0, usize::from(self.top)), at, (draw, 1.0))
+        self.descend::<F>(self.below(ROOT), at, draw, 1.0)
     }
 
-    /// Chooses among the `count` nodes from `first` on and their descendants, given the probability of
-    /// reaching them.
+    /// Chooses among nodes and their descendants, given the probability of reaching them.
     fn descend<F: Facing>(
         &self,
-        (mut first, mut count): (usize, usize),
+        mut nodes: Siblings,
         at: &Receiver,
-        (mut draw, mut probability): (f64, f64),
+        mut draw: f64,
+        mut probability: f64,
     ) -> (usize, f32, f64) {
         loop {
-            let chances = self.chances::<F>(first, count, at);
-            let (lane, rest) = chances.pick(count, draw);
+            let chances = self.chances::<F>(nodes, at);
+            let (lane, rest) = chances.pick(nodes.count, draw);
             probability *= chances.of(lane);
-            let node = first + lane;
-            count = usize::from(self.children[node]);
+            let node = nodes.first + lane;
+            let (first, count) = (self.child[node] as usize, usize::from(self.children[node]));
             if count == 0 {
-                return (self.child[node] as usize, probability as f32, rest);
+                return (first, probability as f32, rest);
             }
-            (first, draw) = (self.child[node] as usize, rest);
+            nodes = Siblings { first, count };
+            draw = rest;
         }
     }
 
@@ -196,25 +206,27 @@ impl Tree {
         }
         while node != ROOT {
             let above = self.parent[node as usize];
-            let (first, count) = self.below(above);
-            probability *= self.chances::<F>(first, count, at).of(node as usize - first);
+            let nodes = self.below(above);
+            probability *= self.chances::<F>(nodes, at).of(node as usize - nodes.first);
             node = above;
         }
         probability as f32
     }
 
-    /// Returns the first child of a node or the [`ROOT`], and the number of children.
-    pub(in crate::world) fn below(&self, node: u32) -> (usize, usize) {
+    /// Returns the children of a node or the [`ROOT`].
+    pub(in crate::world) fn below(&self, node: u32) -> Siblings {
         if node == ROOT {
-            return (0, usize::from(self.top));
+            return Siblings { first: 0, count: usize::from(self.top) };
         }
-        (self.child[node as usize] as usize, usize::from(self.children[node as usize]))
+        let node = node as usize;
+        Siblings { first: self.child[node] as usize, count: usize::from(self.children[node]) }
     }
 
-    /// Returns the relative probabilities of the `count` nodes from `first` on; by power alone if they
-    /// leave the range of single precision.
+    /// Returns the relative probabilities of nodes; by power alone if they leave the range of
+    /// single precision.
     #[inline(always)]
-    fn chances<F: Facing>(&self, first: usize, count: usize, at: &Receiver) -> Chances {
+    fn chances<F: Facing>(&self, nodes: Siblings, at: &Receiver) -> Chances {
+        let Siblings { first, count } = nodes;
         let chances = Chances::new(self.irradiance::<F>(first, at), count);
         if RESOLVED.contains(&chances.total) {
             return chances;

@@ -4,6 +4,7 @@ use crate::lanes::F32x16;
 use crate::ray::MISS;
 use crate::scene::{ConductorFresnel, Light, Material, NamedMaterial, Rgb, Scene};
 use crate::vec3::Vec3;
+use crate::world::caustics::selection::CausticChoice;
 use crate::world::caustics::{
     CausticCasters, CausticHit, CausticPath, CausticQuery, CausticSample, CausticSource,
 };
@@ -52,15 +53,15 @@ fn first(v: Vec3<F32x16>) -> glam::Vec3 {
 fn sample(
     casters: &CausticCasters,
     at: &Receiver,
-    (emitter, caster, path): (usize, usize, CausticPath),
-    (place, rate): ([f32; 2], f64),
+    choice: &CausticChoice,
+    place: [f32; 2],
 ) -> CausticSample {
-    let code = [caster as u32 * CausticPath::COUNT; ROW];
+    let code = [choice.caster as u32 * CausticPath::COUNT; ROW];
     let query = CausticQuery {
         point: splat(at.point),
-        pairs: casters.pair_row(&code, &[emitter as u32; ROW], 1),
-        path: [path; ROW],
-        rate: F32x16::splat(rate as f32),
+        pairs: casters.pair_row(&code, &[choice.emitter as u32; ROW], 1),
+        path: [choice.path; ROW],
+        rate: F32x16::splat(choice.rate as f32),
     };
     query.sample(place.map(F32x16::splat))
 }
@@ -70,15 +71,16 @@ fn sample(
 fn densities(
     casters: &CausticCasters,
     at: &Receiver,
-    caustic: (usize, usize, CausticPath),
+    emitter: usize,
+    caster: usize,
+    path: CausticPath,
     place: [f32; 2],
 ) -> Option<[f64; 2]> {
-    let (emitter, caster, path) = caustic;
-    let rate = casters.rate(at, (emitter, caster), path);
+    let rate = casters.rate(at, emitter, caster, path);
     if rate == 0.0 {
         return None;
     }
-    let sample = sample(casters, at, caustic, (place, rate));
+    let sample = sample(casters, at, &CausticChoice { emitter, caster, path, rate }, place);
     if sample.lanes & 1 == 0 || sample.incidence.to_array()[0] < 0.1 {
         return None;
     }
@@ -129,7 +131,7 @@ fn caustic_samples_and_bsdf_samples_agree_on_densities() {
             for caster in 0..casters.casters.len() {
                 for path in CausticPath::ALL {
                     let place = [random.unit() as f32, random.unit() as f32];
-                    let both = densities(casters, &at, (emitter, caster, path), place);
+                    let both = densities(casters, &at, emitter, caster, path, place);
                     let Some([sample, expected]) = both else { continue };
                     compared[path as usize] += 1;
                     let off = (sample / expected - 1.0).abs();
@@ -167,7 +169,7 @@ fn caustics_are_chosen_at_their_rates() {
         for emitter in 0..casters.emitters.len() {
             for caster in 0..casters.casters.len() {
                 for path in CausticPath::ALL {
-                    let rate = casters.rate(&at, (emitter, caster), path);
+                    let rate = casters.rate(&at, emitter, caster, path);
                     let key = (emitter, caster, path as usize);
                     let (count, chosen) = counts.get(&key).copied().unwrap_or_default();
                     let off = f64::from(count) / f64::from(DRAWS) - rate;

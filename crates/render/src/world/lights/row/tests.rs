@@ -27,7 +27,7 @@ fn rows_equal_their_lanes() {
     // From far, from near, and from where half of the lanes need the exact distance.
     for distance in [0.250_001, 0.3, 1.0, 100.0, 1e7] {
         let origin = Vec3::new(0.3, -0.5, 0.7) + Vec3::new(0.48, -0.6, 0.64) * distance;
-        let disc = Disc::new(&spheres, 0, Rgb::ONE, (origin, 1.0)).expect("the point is outside");
+        let disc = Disc::new(&spheres, 0, Rgb::ONE, origin, 1.0).expect("the point is outside");
         let view = LightView::Disc(disc);
         (1..=ROW).for_each(|count| check(&view, count, count as u64));
     }
@@ -77,10 +77,10 @@ fn assert_rows_equal_lanes(world: &World) {
         }
         for lane in 0..ROW {
             let draw = LightDraw::new(numbers[lane]);
-            let from = (each[lane].point, each[lane].own);
+            let Receiver { point, own, .. } = each[lane];
             let chosen = world.lights.choose(&each[lane], draw.light);
             let one = chosen.filter(|_| lanes >> lane & 1 == 1).and_then(|(light, chance)| {
-                Some((world.lights.sample(world, light, from, draw.point)?, chance))
+                Some((world.lights.sample(world, light, point, own, draw.point)?, chance))
             });
             assert_eq!(one.is_some(), row.lanes >> lane & 1 == 1, "{seed} {lane}");
             let Some((one, chance)) = one else { continue };

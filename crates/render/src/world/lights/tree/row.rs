@@ -4,7 +4,7 @@
 //! that sums and searches are in lanes as well. Below, each receiver descends alone.
 
 use super::super::row::{ROW, ReceiverRow};
-use super::{BRANCHES, Nodes, RESOLVED, Surface, Tree};
+use super::{BRANCHES, Nodes, RESOLVED, Siblings, Surface, Tree};
 use crate::lanes::{Doubles, F32x16, F64x8, Mask, set_bits, widen};
 use crate::vec3::Vec3;
 
@@ -48,9 +48,9 @@ impl Tree {
                 let (found, pdf, _) = if picked.resolved >> i & 1 == 0 {
                     self.choose::<Surface>(&at.receiver(lane), draw.to_array()[i])
                 } else if below > 0 {
-                    let first = self.child[node] as usize;
+                    let nodes = Siblings { first: self.child[node] as usize, count: below };
                     let rest = picked.rest.to_array()[i];
-                    self.descend::<Surface>((first, below), &at.receiver(lane), (rest, chance[i]))
+                    self.descend::<Surface>(nodes, &at.receiver(lane), rest, chance[i])
                 } else {
                     (self.child[node] as usize, chance[i] as f32, 0.0)
                 };
