@@ -15,7 +15,6 @@ use spherule_render::integrator::elisions::Elisions;
 use spherule_render::integrator::generate::generate;
 use spherule_render::integrator::workspace::Workspace;
 use spherule_render::integrator::{Job, ao, stages};
-use spherule_render::sampling::{PixelFilter, Sampler};
 use spherule_render::scene::{Integrator, Lens, Scene};
 use spherule_render::settings::{Filter, SamplerKind};
 use std::ops::Range;
@@ -45,25 +44,14 @@ fn compare(
         change(&mut scene);
         let world = World::build(&scene).unwrap();
         let settings = &scene.settings;
-        let sampler = Sampler::new(settings.sampler, settings.seed, settings.spp);
-        let filter = PixelFilter::new(settings.filter);
-        let (tracer, elisions) = (Tracer::default(), Elisions::ALL);
-        let job = Job {
-            world: &world,
-            settings,
-            sampler: &sampler,
-            filter: &filter,
-            tracer,
-            elisions,
-            device: None,
-        };
+        let job = Job::new(&world, settings, settings.spp, Tracer::default(), Elisions::ALL);
         let pixels: Vec<(u32, u32)> = (0..PIXELS).map(|i| (i % 20 * 2, i / 20 * 3)).collect();
         let tree = Tree { bvh: &world.bvh, spheres: &world.spheres };
         let tree = Arc::new(DeviceTree::new(&device, tree).unwrap());
         let paths = DeviceIntegrator::new(&tree, &world).unwrap();
         let job_numbers = device_job(&job).unwrap();
         let found = paths.first_stages(&job_numbers, &pixels, &SAMPLES).unwrap();
-        let mut work = Workspace::new(&world, elisions);
+        let mut work = Workspace::new(&world, Elisions::ALL);
         generate(&job, pixels.iter().copied(), SAMPLES, &mut work);
         assert_eq!(work.len(), found.camera_rays.len());
         finish(&job, &mut work);

@@ -8,7 +8,6 @@ use crate::integrator::workspace::Workspace;
 use crate::integrator::{Job, stages};
 use crate::layers::{Features, Layers, NOTHING};
 use crate::render::{Options, PASS, strata};
-use crate::sampling::{PixelFilter, Sampler};
 use crate::settings::Settings;
 use crate::world::World;
 use rayon::prelude::*;
@@ -45,25 +44,14 @@ impl MissingFeatures {
     pub(super) fn trace(&mut self, world: &World, film: &Film, options: &Options) -> bool {
         self.tiles.resize(film.tiles.len(), Missing::default());
         let settings = &self.settings;
-        let sampler = Sampler::new(settings.sampler, settings.seed, strata(settings));
-        let filter = PixelFilter::new(settings.filter);
-        let (tracer, elisions) = (options.tracer, options.elisions);
-        let job = Job {
-            world,
-            settings,
-            sampler: &sampler,
-            filter: &filter,
-            tracer,
-            elisions,
-            device: None,
-        };
+        let job = Job::new(world, settings, strata(settings), options.tracer, options.elisions);
         let tiles = self.tiles.par_iter_mut().zip(&film.tiles);
         let tiles = tiles.filter_map(|(missing, tile)| {
             missing.forget_recorded(tile);
             missing.is_incomplete(tile).then_some((missing, tile))
         });
         let done = tiles.map_init(
-            || Workspace::new(world, elisions),
+            || Workspace::new(world, options.elisions),
             |work, (missing, tile)| {
                 !options.is_cancelled() && {
                     missing.trace(&job, tile, work);

@@ -20,7 +20,7 @@ const MAX_MIRRORED_SUNS: usize = 4;
 ///
 /// # Errors
 /// A reason why devices do not follow paths.
-pub fn device_job<'a>(job: &Job<'a>) -> Result<DeviceJob<'a>, &'static str> {
+pub fn device_job<'a>(job: &'a Job) -> Result<DeviceJob<'a>, &'static str> {
     let world = job.world;
     let roulette = match job.settings.roulette {
         Roulette::None => DeviceRoulette::None,

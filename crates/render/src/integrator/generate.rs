@@ -20,7 +20,7 @@ pub fn generate(
     samples: Range<u32>,
     work: &mut Workspace,
 ) {
-    generate_streams(job, pixels.map(|(x, y)| (x, y, *job.sampler)), samples, work);
+    generate_streams(job, pixels.map(|(x, y)| (x, y, job.sampler)), samples, work);
 }
 
 /// Starts paths for streams of samples: column and row of a pixel, and the sampler of its numbers.
@@ -77,12 +77,12 @@ fn start(
             row.set(count % MAX_LANES, x, y, index, &sampler);
             count += 1;
             if count.is_multiple_of(MAX_LANES) {
-                work.start_samples(job.sampler, &row, count - MAX_LANES);
+                work.start_samples(&job.sampler, &row, count - MAX_LANES);
             }
         }
     }
     if !count.is_multiple_of(MAX_LANES) {
-        work.start_samples(job.sampler, &row, count - count % MAX_LANES);
+        work.start_samples(&job.sampler, &row, count - count % MAX_LANES);
     }
     count
 }
@@ -101,7 +101,7 @@ pub fn dither_thresholds(pixels: impl Iterator<Item = (u32, u32)>, work: &mut Wo
 /// Starts a path through the center of each of some pixels, no more than a batch, and of the lens. Camera rays end at the first
 /// body, translucent or not.
 pub fn generate_centers(job: &Job, pixels: impl Iterator<Item = (u32, u32)>, work: &mut Workspace) {
-    let count = start(job, pixels.map(|(x, y)| (x, y, *job.sampler)), 0..1, work);
+    let count = start(job, pixels.map(|(x, y)| (x, y, job.sampler)), 0..1, work);
     work.start_paths(count);
     work.thresholds.fill(0.0);
     let middle = [F32x16::splat(0.0); 2];

@@ -46,16 +46,16 @@ use glam::DVec3;
 use workspace::Workspace;
 
 /// Everything that an integrator reads.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct Job<'a> {
     /// The scene.
     pub world: &'a World,
     /// Settings of the render.
     pub settings: &'a Settings,
     /// Sample points.
-    pub sampler: &'a Sampler,
+    pub sampler: Sampler,
     /// Pixel filter.
-    pub filter: &'a PixelFilter,
+    pub filter: PixelFilter,
     /// Ray traversal.
     pub tracer: Tracer,
     /// Work that may be omitted without changing the image.
@@ -64,7 +64,20 @@ pub struct Job<'a> {
     pub device: Option<&'a dyn DevicePaths>,
 }
 
-impl Job<'_> {
+impl<'a> Job<'a> {
+    /// Creates a job that no device takes part in, for pixels of `samples` samples.
+    pub fn new(
+        world: &'a World,
+        settings: &'a Settings,
+        samples: u32,
+        tracer: Tracer,
+        elisions: Elisions,
+    ) -> Self {
+        let sampler = Sampler::new(settings.sampler, settings.seed, samples);
+        let filter = PixelFilter::new(settings.filter);
+        Self { world, settings, sampler, filter, tracer, elisions, device: None }
+    }
+
     /// Returns the maximum number of bounces.
     pub fn depth(&self) -> u32 {
         self.settings.depth.unwrap_or(Settings::HARD_DEPTH)

@@ -16,7 +16,6 @@ use crate::integrator::Job;
 use crate::integrator::workspace::Workspace;
 use crate::ray::{GROUND, MISS};
 use crate::render::{self, Options, RenderError, Statistics};
-use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::Settings;
 use crate::world::World;
 use bytemuck::Zeroable;
@@ -270,16 +269,12 @@ fn trace<Memory: Send>(
     tiles: Vec<(Region, Memory)>,
     write: impl Fn(Region, &mut Memory, &mut dyn Iterator<Item = Features>) + Sync,
 ) {
-    let sampler = Sampler::new(settings.sampler, settings.seed, settings.spp);
-    let filter = PixelFilter::new(settings.filter);
-    let (tracer, elisions) = (options.tracer, options.elisions);
-    let job =
-        Job { world, settings, sampler: &sampler, filter: &filter, tracer, elisions, device: None };
+    let job = Job::new(world, settings, settings.spp, options.tracer, options.elisions);
     let traced = |layer: &Layer| *layer != Layer::Id && !layer.is_statistic();
     let sampled = wanted.iter().any(traced);
     let samples = if sampled { settings.spp.min(SAMPLES) } else { 0 };
     tiles.into_par_iter().filter(|_| !options.is_cancelled()).for_each_init(
-        || Workspace::new(world, elisions),
+        || Workspace::new(world, options.elisions),
         |work, (region, mut memory)| {
             let mut layers = TileLayers::new(region);
             layers.refine(&job, samples, work);

@@ -7,7 +7,6 @@ use crate::integrator::generate::{generate, generate_centers};
 use crate::integrator::workspace::Workspace;
 use crate::integrator::{Job, stages};
 use crate::render::{self, Options, RenderError, passes, view};
-use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::{SamplerKind, Settings};
 use crate::trace::Traversal;
 use crate::world::World;
@@ -67,22 +66,11 @@ impl ProgressiveLayers {
         }
         self.settings = settings.clone();
         let (samples, tiles) = (settings.spp.min(SAMPLES), self.tiles.len());
-        let sampler = Sampler::new(settings.sampler, settings.seed, settings.spp);
-        let filter = PixelFilter::new(settings.filter);
-        let (tracer, elisions) = (options.tracer, options.elisions);
-        let job = Job {
-            world,
-            settings,
-            sampler: &sampler,
-            filter: &filter,
-            tracer,
-            elisions,
-            device: None,
-        };
+        let job = Job::new(world, settings, settings.spp, options.tracer, options.elisions);
         let next = AtomicUsize::new(0);
         let queue: Vec<Mutex<&mut TileLayers>> = self.tiles.iter_mut().map(Mutex::new).collect();
         rayon::broadcast(|_| {
-            let mut work = Workspace::new(world, elisions);
+            let mut work = Workspace::new(world, options.elisions);
             while !options.is_cancelled() {
                 let number = next.fetch_add(1, Ordering::Relaxed);
                 let Some(Ok(mut tile)) = queue.get(number).map(Mutex::lock) else { return };

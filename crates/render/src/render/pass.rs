@@ -84,8 +84,7 @@ impl TileSamples {
         if tiles.clone().any(|tile| tile.features) && Tile::records(&samples) {
             work.features.begin(samples.len());
         }
-        let streams =
-            tiles.flat_map(|tile| tile.region.morton()).map(|(x, y)| (x, y, *job.sampler));
+        let streams = tiles.flat_map(|tile| tile.region.morton()).map(|(x, y)| (x, y, job.sampler));
         trace_paths(job, view, regions, streams, samples, work);
         Self::Paths
     }
@@ -157,7 +156,7 @@ pub(super) fn probe_pass(
         let count = range.len() as u32;
         work.clock.restart();
         work.probes = ProbeBatch::new(range.clone(), streams);
-        let starts = tiles.iter().flat_map(|tile| tile.probes.starts(job.sampler));
+        let starts = tiles.iter().flat_map(|tile| tile.probes.starts(&job.sampler));
         let regions = tiles.iter().map(|tile| tile.region);
         trace_paths(job, view, regions, starts, range, work);
         let probes = std::mem::take(&mut work.probes);
@@ -199,7 +198,7 @@ pub(super) fn pilot_pass(
         return;
     }
     work.clock.restart();
-    let pixels = |tile: &&mut Tile| Pilot::starts(tile, job.sampler, job.settings.seed, block);
+    let pixels = |tile: &&mut Tile| Pilot::starts(tile, &job.sampler, job.settings.seed, block);
     let pixels: Vec<_> = tiles.iter().map(pixels).collect();
     let streams = pixels.iter().flatten().map(|&(x, y, sampler, _)| (x, y, sampler));
     let regions = tiles.iter().map(|tile| tile.region);

@@ -8,7 +8,6 @@ use crate::integrator::Job;
 use crate::integrator::generate::{dither_thresholds, generate_centers};
 use crate::integrator::preview::{self, Lighting};
 use crate::integrator::workspace::{BATCH, Workspace};
-use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::{Integrator, Rgb, Settings};
 use crate::world::{Irradiance, World};
 use rayon::prelude::*;
@@ -36,20 +35,9 @@ pub fn preview(
     shadows: bool,
 ) -> Result<Option<Image>, RenderError> {
     let region = check(world, settings, options)?;
-    let sampler = Sampler::new(settings.sampler, settings.seed, 1);
-    let filter = PixelFilter::new(settings.filter);
-    let (tracer, elisions) = (options.tracer, options.elisions);
     // The glint of a light in glass is left to the mirrored ray.
     let chosen = Settings { caustics: false, ..settings.clone() };
-    let job = Job {
-        world,
-        settings: &chosen,
-        sampler: &sampler,
-        filter: &filter,
-        tracer,
-        elisions,
-        device: None,
-    };
+    let job = Job::new(world, &chosen, 1, options.tracer, options.elisions);
     let occlusion = matches!(settings.integrator, Integrator::Ao { .. });
     let irradiance = if occlusion {
         Irradiance::constant(Rgb::splat(PI))
@@ -65,7 +53,7 @@ pub fn preview(
     let rows = rows.zip(tiles.par_chunks(width.div_ceil(TILE as usize)));
     let cancelled = || options.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed));
     rows.for_each_init(
-        || Workspace::new(world, elisions),
+        || Workspace::new(world, options.elisions),
         |work, (pixels, tiles)| {
             if !cancelled() {
                 render_row(&job, &lighting, tiles, width, pixels, work);

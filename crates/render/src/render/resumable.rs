@@ -12,7 +12,6 @@ use crate::film::{Film, Region, View};
 use crate::integrator::Job;
 use crate::integrator::device::device_job;
 use crate::noise::{FIRST_SAMPLES, Noise, StopCondition};
-use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::{Integrator, Settings};
 use crate::trace::Traversal;
 use crate::world::World;
@@ -290,7 +289,7 @@ fn with_job<T>(
     with_processor(world, settings, options, |job| {
         let integrator = world.device_paths.as_ref();
         let paths = integrator.and_then(|device| device.begin(&device_job(job).ok()?));
-        work(&Job { device: paths.as_deref(), ..*job })
+        work(&Job { device: paths.as_deref(), ..job.clone() })
     })
 }
 
@@ -301,18 +300,9 @@ fn with_processor<T>(
     options: &Options,
     work: impl FnOnce(&Job) -> T,
 ) -> T {
-    let sampler = Sampler::new(settings.sampler, settings.seed, strata(settings));
-    let filter = PixelFilter::new(settings.filter);
+    let samples = strata(settings);
     let settings = in_world_units(world, settings);
-    work(&Job {
-        world,
-        settings: &settings,
-        sampler: &sampler,
-        filter: &filter,
-        tracer: options.tracer,
-        elisions: options.elisions,
-        device: None,
-    })
+    work(&Job::new(world, &settings, samples, options.tracer, options.elisions))
 }
 
 /// Returns the settings with lengths in the world's units.

@@ -80,7 +80,7 @@ fn complete(
         let sample = pass.start + index(batch[0]) as u32;
         let pixel = |&path: &usize| {
             let (x, y) = pixels[path / pass.len()];
-            (x, y, *job.sampler)
+            (x, y, job.sampler)
         };
         let streams = batch.iter().map(pixel);
         trace_paths(job, View::Anything, lit.into_iter(), streams, sample..sample + 1, work);
