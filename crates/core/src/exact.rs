@@ -23,7 +23,7 @@ use crate::capsule::Capsule;
 use crate::cone::Cone;
 use crate::ellipsoid::Ellipsoid;
 use crate::ray::ExactRay;
-use dyadic::{Dyadic, dot, nearest_root};
+use dyadic::{Dyadic, SignedRoot, dot, nearest_root};
 use glam::DVec3;
 use std::cmp::Ordering;
 
@@ -87,7 +87,8 @@ pub fn hit(ray: &ExactRay, center: DVec3, radius: f64) -> Option<f64> {
 pub fn nearest_distance(ray: &ExactRay, center: DVec3, radius: f64) -> Option<f64> {
     let encounter = Encounter::new(ray, center, radius);
     let sign = encounter.root()?;
-    Some(nearest_root(&encounter.a, &encounter.b, (sign, &encounter.discriminant)))
+    let root = SignedRoot { sign, radicand: &encounter.discriminant };
+    Some(nearest_root(&encounter.a, &encounter.b, root))
 }
 
 /// Outward unit normal where a ray hits a sphere, which it does, correct to a few units of the last
@@ -139,20 +140,26 @@ impl Quotient {
         }
     }
 
+    fn root(&self) -> SignedRoot<'_> {
+        SignedRoot { sign: self.sign, radicand: &self.q }
+    }
+
     /// -1, 0 or 1.
     fn sign(&self) -> i32 {
-        sign_of_sum(&self.p, (self.sign, &self.q), (0, &self.q))
+        sign_of_sum(&self.p, self.root(), SignedRoot { sign: 0, ..self.root() })
     }
 
     fn compare(&self, other: &Self) -> Ordering {
         let (p, q) = (&self.p * &other.a, &self.q * &other.a.square());
         let (other_p, other_q) = (&other.p * &self.a, &other.q * &self.a.square());
-        sign_of_sum(&(&p - &other_p), (self.sign, &q), (-other.sign, &other_q)).cmp(&0)
+        let root = SignedRoot { sign: self.sign, radicand: &q };
+        let minus_other = SignedRoot { sign: -other.sign, radicand: &other_q };
+        sign_of_sum(&(&p - &other_p), root, minus_other).cmp(&0)
     }
 
     /// The nearest number of double precision, of a positive number.
     fn nearest(&self) -> f64 {
-        nearest_root(&self.a, &self.p, (self.sign, &self.q))
+        nearest_root(&self.a, &self.p, self.root())
     }
 }
 
@@ -192,9 +199,10 @@ pub fn compare(ray: &ExactRay, first: &Distance, second: &Distance) -> Ordering 
     first.value(ray).compare(&second.value(ray))
 }
 
-/// The sign of `p + s1 sqrt(q1) + s2 sqrt(q2)`; signs are -1, 0 or 1, radicands not negative.
-fn sign_of_sum(p: &Dyadic, (s1, q1): (i32, &Dyadic), (s2, q2): (i32, &Dyadic)) -> i32 {
-    let (s1, s2) = (s1 * q1.sign(), s2 * q2.sign());
+/// The sign of `p + s1 sqrt(q1) + s2 sqrt(q2)`, a number and two roots.
+fn sign_of_sum(p: &Dyadic, first: SignedRoot, second: SignedRoot) -> i32 {
+    let (q1, q2) = (first.radicand, second.radicand);
+    let (s1, s2) = (first.sign * q1.sign(), second.sign * q2.sign());
     let roots = match (s1, s2) {
         (0, s) | (s, 0) => s,
         (a, b) if a == b => a,
@@ -281,7 +289,9 @@ mod tests {
             let sum = f64::from(p) + root(s1, q1) + root(s2, q2);
             let expected = if sum.abs() < 1e-9 { 0 } else { sum.signum() as i32 };
             let (p, q1, q2) = (number(p.into()), number(q1.into()), number(q2.into()));
-            prop_assert_eq!(sign_of_sum(&p, (s1, &q1), (s2, &q2)), expected);
+            let first = SignedRoot { sign: s1, radicand: &q1 };
+            let second = SignedRoot { sign: s2, radicand: &q2 };
+            prop_assert_eq!(sign_of_sum(&p, first, second), expected);
         }
     }
 }

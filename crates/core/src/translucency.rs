@@ -118,8 +118,9 @@ pub struct Fragment {
 }
 
 impl Fragment {
-    /// The ground, or the distance beyond which nothing counts.
-    fn known((t, hit): (f64, u32)) -> Self {
+    /// What is known of a ray: the ground, or the distance beyond which nothing counts.
+    fn known(attenuated: &AttenuatedRay) -> Self {
+        let (t, hit) = attenuated.known;
         let root = Root { t, error: 0.0, exact: false };
         Self { root, hit, inside: false, depth: OpticalDepth::OPAQUE }
     }
@@ -220,7 +221,7 @@ impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
     /// integers.
     fn gather(&self, attenuated: &AttenuatedRay, fragments: &mut Vec<Fragment>) -> (Fragment, u64) {
         fragments.clear();
-        let mut end = Fragment::known(attenuated.known);
+        let mut end = Fragment::known(attenuated);
         let (mut all, mut exact) = (OpticalDepth::NONE, 0);
         self.for_each_body(attenuated, end.far(), |fragment| {
             exact += u64::from(fragment.root.exact);
@@ -265,7 +266,7 @@ impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
     /// Returns the depth of all bodies before `attenuated.known`, or a part of it that reaches the threshold. Also returns how
     /// many decisions were made on integers.
     fn depth_before(&self, attenuated: &AttenuatedRay) -> (OpticalDepth, u64) {
-        let end = Fragment::known(attenuated.known);
+        let end = Fragment::known(attenuated);
         let (mut sum, mut exact) = (OpticalDepth::NONE, 0);
         self.for_each_body(attenuated, end.far(), |fragment| {
             exact += u64::from(fragment.root.exact);

@@ -80,7 +80,7 @@ impl<'a, Q: Query> Decision<'a, Q> {
         if !plain {
             return self.test_sphere_closely(sphere);
         }
-        self.update_if_nearer(sphere, (t, t * CLEAR))
+        self.update_if_nearer(Nearest { t, error: t * CLEAR, sphere: sphere as u32 })
     }
 
     /// Does what [`Decision::test_sphere`] does where the short test in double precision can't tell.
@@ -126,17 +126,16 @@ impl<'a, Q: Query> Decision<'a, Q> {
     fn update_if_root(&mut self, sphere: usize, root: Option<Root>) -> bool {
         root.is_some_and(|Root { t, error, exact }| {
             self.exact += u64::from(exact);
-            self.update_if_nearer(sphere, (t, error))
+            self.update_if_nearer(Nearest { t, error, sphere: sphere as u32 })
         })
     }
 
-    /// Keeps a hit at distance `t`, give or take `error`, if it is nearer than the hit so far. Returns whether
-    /// it is.
+    /// Keeps a hit if it is nearer than the hit so far. Returns whether it is.
     #[inline(always)]
-    fn update_if_nearer(&mut self, sphere: usize, (t, error): (f64, f64)) -> bool {
-        let nearer = self.is_nearer(sphere, (t, error));
+    fn update_if_nearer(&mut self, hit: Nearest) -> bool {
+        let nearer = self.is_nearer(hit);
         if nearer {
-            self.nearest = Nearest { t, error, sphere: sphere as u32 };
+            self.nearest = hit;
         }
         nearer
     }
@@ -164,31 +163,32 @@ impl<'a, Q: Query> Decision<'a, Q> {
 
     /// Returns whether a hit replaces the hit so far.
     #[inline(always)]
-    fn is_nearer(&mut self, sphere: usize, (t, error): (f64, f64)) -> bool {
-        let nearest = self.nearest;
+    fn is_nearer(&mut self, hit: Nearest) -> bool {
+        let (Nearest { t, error, sphere }, nearest) = (hit, self.nearest);
         if t + error < nearest.t - nearest.error {
             return true;
         }
         if t - error > nearest.t + nearest.error {
             return false;
         }
-        match self.compare(sphere, (t, error)) {
+        match self.compare(hit) {
             Ordering::Less => true,
-            Ordering::Equal => !Q::ANY && self.precedes(sphere, nearest.sphere),
+            Ordering::Equal => !Q::ANY && self.precedes(sphere as usize, nearest.sphere),
             Ordering::Greater => false,
         }
     }
 
-    /// Compares distances that are closer than their errors: by closer bounds, then on integers.
+    /// Compares a hit with the hit so far where their distances are closer than their errors: by
+    /// closer bounds, then on integers.
     #[cold]
-    fn compare(&mut self, sphere: usize, (t, error): (f64, f64)) -> Ordering {
-        let (nearest, other) = (self.nearest, self.nearest.sphere as usize);
-        let coincide = || self.spheres.exact(sphere) == self.spheres.exact(other);
-        if nearest.error != 0.0 && coincide() {
+    fn compare(&mut self, hit: Nearest) -> Ordering {
+        let nearest = self.nearest;
+        let exact = |hit: Nearest| self.spheres.exact(hit.sphere as usize);
+        if nearest.error != 0.0 && exact(hit) == exact(nearest) {
             return Ordering::Equal;
         }
-        let first = self.root(sphere, (t, error));
-        let second = self.root(other, (nearest.t, nearest.error));
+        let first = self.root(hit);
+        let second = self.root(nearest);
         let gap = first.0.t - second.0.t;
         if gap.abs() > first.0.error + second.0.error {
             return gap.total_cmp(&0.0);
@@ -197,14 +197,15 @@ impl<'a, Q: Query> Decision<'a, Q> {
         exact::compare(&self.ray, &first.1, &second.1)
     }
 
-    /// Returns a distance with its closest bound, and its definition. An error of 0 says that the distance
-    /// is a given number.
-    fn root(&self, sphere: usize, (t, error): (f64, f64)) -> (Root, Distance) {
+    /// Returns the distance of a hit with its closest bound, and its definition. An error of 0 says
+    /// that the distance is a given number.
+    fn root(&self, hit: Nearest) -> (Root, Distance) {
+        let Nearest { t, error, sphere } = hit;
         let number = Root { t, error: 0.0, exact: false };
         if error == 0.0 {
             return (number, Distance::Number(t));
         }
-        let (center, radius) = self.spheres.exact(sphere);
+        let (center, radius) = self.spheres.exact(sphere as usize);
         let root = intersect::confirm_closely(&self.ray, center, radius, || false);
         (root.unwrap_or(number), Distance::Hit(center, radius))
     }

@@ -91,7 +91,7 @@ impl<L: Lanes> SphereLanes<L> {
 impl<L: Lanes> NearestHit<L> {
     /// No candidate yet, between bounds of the distance at which the search ends.
     #[inline(always)]
-    pub(super) fn new<Q: Query>((t_min, t_max): (L, L)) -> Self {
+    pub(super) fn new<Q: Query>(t_min: L, t_max: L) -> Self {
         let near = if Q::ANY { t_min } else { L::splat(f32::INFINITY) };
         Self { sphere: bits(MISS), near, t_max }
     }
@@ -107,7 +107,8 @@ impl<L: Lanes> NearestHit<L> {
     pub(super) fn update<Q: Query>(
         &mut self,
         runner_up: &mut RunnerUp<L>,
-        (ray, margin): (&ConservativeRay<L>, &Margin<L>),
+        ray: &ConservativeRay<L>,
+        margin: &Margin<L>,
         candidate: &Candidate<L>,
     ) {
         let near = candidate.chord.near();
@@ -116,7 +117,7 @@ impl<L: Lanes> NearestHit<L> {
         if !Q::EXACT {
             self.accept_unverified::<Q>(lanes, near, candidate.number);
         } else if Q::ANY {
-            self.update_any(lanes, (ray, margin), candidate);
+            self.update_any(lanes, ray, margin, candidate);
         } else {
             let around = lanes & near.lt(L::splat(0.0));
             let far = likely_distance(near, radius);
@@ -158,7 +159,8 @@ impl<L: Lanes> NearestHit<L> {
     fn update_any(
         &mut self,
         lanes: L::Mask,
-        (ray, margin): (&ConservativeRay<L>, &Margin<L>),
+        ray: &ConservativeRay<L>,
+        margin: &Margin<L>,
         candidate: &Candidate<L>,
     ) {
         let radius = candidate.sphere.radius;

@@ -221,9 +221,10 @@ impl<Q: Query, const MOVED: bool> Search for DecidedSearch<'_, Q, MOVED> {
                 continue;
             }
             let row = index * LEAF + lane;
-            let sphere = || (spheres.center(row), spheres.radius(row));
-            let decision = &mut self.decision;
-            if !MOVED && Q::ANY && certainly_hits(&self.ray, sphere(), decision.bounds().0) {
+            let (ray, decision) = (&self.ray, &mut self.decision);
+            let certain =
+                |before: f32| certainly_hits(ray, spheres.center(row), spheres.radius(row), before);
+            if !MOVED && Q::ANY && certain(decision.bounds().0) {
                 decision.nearest.sphere = row as u32;
                 return true;
             }

@@ -17,6 +17,15 @@ use crate::slabs::{MARGIN, PacketSlabs, Planes, Slabs};
 use crate::spheres::{LEAF, SphereBlock, Spheres};
 use crate::vec3::Vec3;
 
+/// The rays that become a packet.
+#[derive(Clone, Copy)]
+pub(super) struct PacketStart {
+    /// The first row.
+    pub(super) row: usize,
+    /// A bit for each lane that belongs to the packet.
+    pub(super) lanes: u32,
+}
+
 /// Some of the rays `row..row + L::WIDTH`.
 #[derive(Clone, Copy)]
 pub(super) struct Packet<L: Lanes> {
@@ -31,8 +40,7 @@ pub(super) struct Packet<L: Lanes> {
 }
 
 impl<Q: Query, L: Lanes> RayGroup<Q> for Packet<L> {
-    /// The first row, and a bit for each lane that belongs to the packet.
-    type Start = (usize, u32);
+    type Start = PacketStart;
     type Slabs = PacketSlabs;
 
     #[inline(always)]
@@ -42,7 +50,7 @@ impl<Q: Query, L: Lanes> RayGroup<Q> for Packet<L> {
             ray: ConservativeRay::IDLE.splat(),
             margin: ConservativeRay::IDLE.splat().margin(),
             excluded: [bits(MISS); 2],
-            nearest: NearestHit::new::<Q>((L::splat(DONE), L::splat(DONE))),
+            nearest: NearestHit::new::<Q>(L::splat(DONE), L::splat(DONE)),
             runner_up: RunnerUp { sphere: SphereLanes::splat([0.0; 4]), near: L::splat(DONE) },
         }
     }
@@ -51,11 +59,11 @@ impl<Q: Query, L: Lanes> RayGroup<Q> for Packet<L> {
     fn start(
         &mut self,
         resolver: &mut HitResolver<Q>,
-        (row, lanes): (usize, u32),
+        start: PacketStart,
         slabs: &mut PacketSlabs,
     ) -> f32 {
-        self.load_rays(resolver, (row, lanes));
-        *slabs = interval_slabs::<L>(resolver.rays, row, lanes);
+        self.load_rays(resolver, start);
+        *slabs = interval_slabs::<L>(resolver.rays, start);
         self.nearest.t_max.greatest()
     }
 
@@ -69,7 +77,7 @@ impl<Q: Query, L: Lanes> RayGroup<Q> for Packet<L> {
         // Copies, which stay in registers: what is stored under a mask takes long to be loaded again.
         let (mut nearest, mut runner_up) = (self.nearest, self.runner_up);
         for lane in set_bits(spheres) {
-            self.test_sphere::<Q>(resolver.spheres, first + lane, (&mut nearest, &mut runner_up));
+            self.test_sphere::<Q>(resolver.spheres, first + lane, &mut nearest, &mut runner_up);
         }
         self.nearest = nearest;
         if Q::EXACT && !Q::ANY {
@@ -84,35 +92,35 @@ impl<Q: Query, L: Lanes> RayGroup<Q> for Packet<L> {
 
     #[inline(always)]
     fn commit(&self, resolver: &mut HitResolver<Q>) {
-        resolver.commit_packet(self.row as usize, &self.ray, (&self.nearest, &self.runner_up));
+        resolver.commit_packet(self.row as usize, &self.ray, &self.nearest, &self.runner_up);
     }
 }
 
 impl<L: Lanes> Packet<L> {
     #[inline(always)]
-    fn load_rays<Q: Query>(&mut self, resolver: &HitResolver<Q>, (row, lanes): (usize, u32)) {
-        let rays = resolver.rays;
+    fn load_rays<Q: Query>(&mut self, resolver: &HitResolver<Q>, start: PacketStart) {
+        let (rays, PacketStart { row, lanes }) = (resolver.rays, start);
         let origin: Vec3<L> = rays.origin.load(row);
         let ray = ConservativeRay::new(origin, rays.direction.load(row));
         self.row = row as u32;
         self.ray = ray;
         self.margin = ray.margin();
         self.excluded = [bits_of(&rays.own[row..]), bits_of(&rays.target[row..])];
-        let bounds = resolver.search_bounds(row, L::lanes(lanes));
-        self.nearest = NearestHit::new::<Q>(bounds);
-        self.runner_up.near = bounds.0;
+        let (t_min, t_max) = resolver.search_bounds(row, L::lanes(lanes));
+        self.nearest = NearestHit::new::<Q>(t_min, t_max);
+        self.runner_up.near = t_min;
     }
 
-    /// Tests some of the rays from a row on against every sphere.
+    /// Tests the rays of a packet against every sphere.
     #[inline(always)]
-    pub(super) fn test_all_spheres<Q: Query>(resolver: &mut HitResolver<Q>, rows: (usize, u32)) {
+    pub(super) fn test_all_spheres<Q: Query>(resolver: &mut HitResolver<Q>, start: PacketStart) {
         let mut packet = <Self as RayGroup<Q>>::idle();
-        packet.load_rays(resolver, rows);
+        packet.load_rays(resolver, start);
         let (mut nearest, mut runner_up) = (packet.nearest, packet.runner_up);
         for sphere in 0..resolver.spheres.len() {
-            packet.test_sphere::<Q>(resolver.spheres, sphere, (&mut nearest, &mut runner_up));
+            packet.test_sphere::<Q>(resolver.spheres, sphere, &mut nearest, &mut runner_up);
         }
-        resolver.commit_packet(rows.0, &packet.ray, (&nearest, &runner_up));
+        resolver.commit_packet(start.row, &packet.ray, &nearest, &runner_up);
     }
 
     /// Tests all rays against a sphere.
@@ -121,7 +129,8 @@ impl<L: Lanes> Packet<L> {
         &self,
         spheres: &Spheres,
         sphere: usize,
-        (nearest, runner_up): (&mut NearestHit<L>, &mut RunnerUp<L>),
+        nearest: &mut NearestHit<L>,
+        runner_up: &mut RunnerUp<L>,
     ) {
         let (block, lane) = (&spheres.blocks()[sphere / LEAF], sphere % LEAF);
         let lanes =
@@ -130,13 +139,14 @@ impl<L: Lanes> Packet<L> {
         let [own, target] = self.excluded.map(|excluded| excluded.has_bits_of(number));
         let chord = Chord::new(&self.ray, lanes.center, lanes.radius);
         let candidate = Candidate { number, allowed: !(own | target), sphere: lanes, chord };
-        nearest.update::<Q>(runner_up, (&self.ray, &self.margin), &candidate);
+        nearest.update::<Q>(runner_up, &self.ray, &self.margin, &candidate);
     }
 }
 
 /// Returns the slabs of the intervals that hold the origins and directions of a packet's rays.
 #[inline(always)]
-fn interval_slabs<L: Lanes>(rays: &Rays, row: usize, lanes: u32) -> PacketSlabs {
+fn interval_slabs<L: Lanes>(rays: &Rays, start: PacketStart) -> PacketSlabs {
+    let PacketStart { row, lanes } = start;
     let first = row + lanes.trailing_zeros() as usize;
     let active = L::lanes(lanes);
     let interval = |v: &Columns3| {

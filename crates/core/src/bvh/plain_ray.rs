@@ -124,9 +124,9 @@ impl Search for DeferredSearch<'_> {
         let chord = chords(&self.ray, block, None);
         let lanes = chord.may_hit(F32x8::splat(self.hit.nearest.t_max)).bits();
         if lanes != 0 {
-            let candidates = (lanes, &chord.near().to_array());
-            let block = (self.spheres, index * LEAF);
-            self.hit.test_spheres::<ClosestRounded>((&self.ray, MISS), block, candidates);
+            let (first, near) = (index * LEAF, chord.near().to_array());
+            let Self { spheres, ray, hit } = self;
+            hit.test_spheres::<ClosestRounded>(ray, MISS, spheres, first, lanes, &near);
         }
         false
     }
@@ -246,8 +246,8 @@ mod tests {
                 PlainAnswer::Miss => assert_eq!(expected.sphere, MISS),
                 PlainAnswer::Undecided => undecided += 1,
                 PlainAnswer::Hit(PlainHit { sphere, t, .. }) => {
-                    let rounded =
-                        intersect::nearest(&exact, spheres.exact(sphere), expected.t, false);
+                    let (center, radius) = spheres.exact(sphere);
+                    let rounded = intersect::nearest(&exact, center, radius, expected.t, false);
                     assert_eq!((sphere as u32, t), (expected.sphere, rounded));
                     hits += 1;
                     for (bound, occluded) in [(t * 0.5, false), (t * 1.001, true)] {

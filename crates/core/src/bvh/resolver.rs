@@ -161,7 +161,8 @@ impl<Q: Query> HitResolver<'_, Q> {
         &mut self,
         first: usize,
         rays: &ConservativeRay<L>,
-        (nearest, runner_up): (&NearestHit<L>, &RunnerUp<L>),
+        nearest: &NearestHit<L>,
+        runner_up: &RunnerUp<L>,
     ) {
         let found = nearest.found();
         if Q::ANY {
@@ -180,10 +181,10 @@ impl<Q: Query> HitResolver<'_, Q> {
         if !self.is_single_precision() {
             return self.mark_unresolved(first, found);
         }
-        let low = self.commit_half::<L, 0>(first, rays, (nearest, runner_up));
+        let low = self.commit_half::<L, 0>(first, rays, nearest, runner_up);
         // Not a loop, so that lanes stay in registers and the halves do not wait for each other.
         let high = if L::WIDTH > 8 {
-            self.commit_half::<L, 8>(first, rays, (nearest, runner_up))
+            self.commit_half::<L, 8>(first, rays, nearest, runner_up)
         } else {
             0
         };
@@ -199,7 +200,8 @@ impl<Q: Query> HitResolver<'_, Q> {
         &mut self,
         first: usize,
         rays: &ConservativeRay<L>,
-        (nearest, runner_up): (&NearestHit<L>, &RunnerUp<L>),
+        nearest: &NearestHit<L>,
+        runner_up: &RunnerUp<L>,
     ) -> u32 {
         let vector =
             |v: Vec3<L>| Vec3::new(v.x.doubles(FROM), v.y.doubles(FROM), v.z.doubles(FROM));
@@ -296,9 +298,9 @@ impl<Q: Query> HitResolver<'_, Q> {
     pub(super) fn round_distances(&mut self) {
         for &row in &self.unrounded {
             let row = row as usize;
-            let sphere = self.spheres.exact(self.hits.sphere[row] as usize);
+            let (center, radius) = self.spheres.exact(self.hits.sphere[row] as usize);
             let t = &mut self.hits.t[row];
-            *t = intersect::nearest(&self.rays.exact(row), sphere, *t, self.coarse);
+            *t = intersect::nearest(&self.rays.exact(row), center, radius, *t, self.coarse);
         }
         self.unrounded.clear();
     }

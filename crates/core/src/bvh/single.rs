@@ -96,8 +96,9 @@ impl<Q: Query> RayGroup<Q> for SingleRay {
         for sphere in set_bits(spheres).map(|lane| first + lane) {
             // A shadow ray that nothing stops comes to its light: so that is tested first.
             let certain = || {
-                let sphere = (resolver.spheres.center(sphere), resolver.spheres.radius(sphere));
-                certainly_hits(&self.ray, sphere, resolver.bounds(row).0)
+                let spheres = resolver.spheres;
+                let (center, radius) = (spheres.center(sphere), spheres.radius(sphere));
+                certainly_hits(&self.ray, center, radius, resolver.bounds(row).0)
             };
             if Q::ANY && resolver.rays.target[row] != sphere as u32 && certain() {
                 resolver.hits.sphere[row] = sphere as u32;
@@ -134,7 +135,8 @@ impl SingleRay {
 #[inline(always)]
 pub(super) fn certainly_hits(
     ray: &ConservativeRay<f32>,
-    (center, radius): (glam::Vec3, f32),
+    center: glam::Vec3,
+    radius: f32,
     before: f32,
 ) -> bool {
     let chord = Chord::new(ray, center.into(), radius);
@@ -154,7 +156,7 @@ impl DeferredHit {
     /// No candidate yet, between bounds of the distance at which the search ends.
     #[inline(always)]
     pub(super) fn new<Q: Query>(bounds: (f32, f32)) -> Self {
-        Self { nearest: NearestHit::new::<Q>(bounds), runner_up: bounds.0 }
+        Self { nearest: NearestHit::new::<Q>(bounds.0, bounds.1), runner_up: bounds.0 }
     }
 
     /// Tests spheres of the block that begins with sphere `first`: a bit of `lanes` for each, which is not hit before
@@ -162,9 +164,12 @@ impl DeferredHit {
     #[inline(always)]
     pub(super) fn test_spheres<Q: Query>(
         &mut self,
-        (ray, target): (&ConservativeRay<f32>, u32),
-        (spheres, first): (&Spheres, usize),
-        (lanes, near): (u32, &[f32; LEAF]),
+        ray: &ConservativeRay<f32>,
+        target: u32,
+        spheres: &Spheres,
+        first: usize,
+        lanes: u32,
+        near: &[f32; LEAF],
     ) {
         for lane in set_bits(lanes) {
             let (sphere, near) = (first + lane, near[lane]);
@@ -173,7 +178,7 @@ impl DeferredHit {
                 self.nearest.accept_unverified::<Q>(counts && near >= 0.0, near, number);
             } else if near < 0.0 || target == sphere as u32 {
                 // By value: what a call may write does not stay in registers.
-                *self = self.test_sphere_closely::<Q>((*ray, target), spheres, sphere);
+                *self = self.test_sphere_closely::<Q>(*ray, target, spheres, sphere);
             } else {
                 let far = likely_distance(near, spheres.radius(sphere));
                 self.nearest.update_nearest(&mut self.runner_up, counts, [near, far], number);
@@ -185,7 +190,8 @@ impl DeferredHit {
     #[inline(always)]
     fn test_sphere_closely<Q: Query>(
         mut self,
-        (ray, target): (ConservativeRay<f32>, u32),
+        ray: ConservativeRay<f32>,
+        target: u32,
         spheres: &Spheres,
         sphere: usize,
     ) -> Self {
@@ -195,7 +201,7 @@ impl DeferredHit {
         let allowed = target != sphere as u32;
         let candidate = Candidate { number: bits(sphere as u32), allowed, sphere: lanes, chord };
         let mut runner_up = RunnerUp { sphere: lanes, near: self.runner_up };
-        self.nearest.update::<Q>(&mut runner_up, (&ray, &ray.margin()), &candidate);
+        self.nearest.update::<Q>(&mut runner_up, &ray, &ray.margin(), &candidate);
         self.runner_up = runner_up.near;
         self
     }
@@ -253,7 +259,7 @@ impl<Q: Query> RayGroup<Q> for DeferredRay {
     fn test_spheres(&mut self, resolver: &mut HitResolver<Q>, first: usize, spheres: u32) {
         let target = resolver.rays.target[self.row as usize];
         let Self { hit, ray, near, .. } = self;
-        hit.test_spheres::<Q>((ray, target), (resolver.spheres, first), (spheres, near));
+        hit.test_spheres::<Q>(ray, target, resolver.spheres, first, spheres, near);
     }
 
     #[inline(always)]

@@ -7,7 +7,7 @@
 //! a packet against all spheres: it is the oracle, and the fastest way where there are few spheres.
 
 use super::interleaved;
-use super::packet::Packet;
+use super::packet::{Packet, PacketStart};
 use super::ray_setup::RayStart;
 use super::resolver::HitResolver;
 use super::single::{DeferredRay, SingleRay};
@@ -278,7 +278,7 @@ fn trace_brute_force<L: Lanes, Q: Query>(
     for (row, mask) in rows.clone().step_by(L::WIDTH).zip(masks) {
         let lanes = lanes_from(row, L::WIDTH, rows.end) & mask;
         if lanes != 0 {
-            Packet::<L>::test_all_spheres(resolver, (row, lanes));
+            Packet::<L>::test_all_spheres(resolver, PacketStart { row, lanes });
         }
     }
 }
@@ -474,11 +474,10 @@ impl<'a, L: Lanes> PacketStarts<'a, L> {
 }
 
 impl<L: Lanes> Iterator for PacketStarts<'_, L> {
-    type Item = (usize, u32);
+    type Item = PacketStart;
 
-    /// Returns the first row and the active lanes of the next packet.
     #[inline(always)]
-    fn next(&mut self) -> Option<(usize, u32)> {
+    fn next(&mut self) -> Option<PacketStart> {
         while !self.rows.is_empty() {
             let row = self.rows.start;
             self.rows.start += L::WIDTH;
@@ -492,7 +491,7 @@ impl<L: Lanes> Iterator for PacketStarts<'_, L> {
                 }
             }
             if lanes != 0 {
-                return Some((row, lanes));
+                return Some(PacketStart { row, lanes });
             }
         }
         None

@@ -5,7 +5,7 @@
 //! Lagrange's identity. Where it enters, `y = (F + t d).v` says whether it enters the capsule there (`0 <= y <= v.v`), or on
 //! the sphere about an end, if at all: a line that is in the cylinder at an end's plane is in that end's sphere.
 
-use super::dyadic::{Dyadic, cross, dot};
+use super::dyadic::{Dyadic, SignedRoot, cross, dot};
 use super::{Encounter, Quotient, sign_of_sum};
 use crate::capsule::{Capsule, Part};
 use crate::ray::ExactRay;
@@ -91,8 +91,10 @@ impl<'a> Line<'a> {
         let p = -dot(&n, &m);
         // Sign of the height over an end's plane, at the start's end `y`, at the other `y - v.v`.
         let (start, slope) = (dot(from, v), &p * &along);
-        let root = (sign * along.sign(), &(&along.square() * &discriminant));
-        let side = |start: &Dyadic| sign_of_sum(&(&(&a * start) + &slope), root, (0, root.1));
+        let radicand = &along.square() * &discriminant;
+        let root = SignedRoot { sign: sign * along.sign(), radicand: &radicand };
+        let zero = SignedRoot { sign: 0, ..root };
+        let side = |start: &Dyadic| sign_of_sum(&(&(&a * start) + &slope), root, zero);
         if side(&start) < 0 {
             return self.end(0, sign);
         }

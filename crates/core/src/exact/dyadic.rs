@@ -63,11 +63,19 @@ fn times_power(x: f64, exponent: i64) -> f64 {
     x * power_of_two(half) * power_of_two(exponent - half)
 }
 
-/// The nearest number of double precision to `(b + sign sqrt(q)) / a`, which is positive and in the range of
-/// normal numbers; of two that are equally near the even one. `a` is positive, `q` not negative.
-pub(super) fn nearest_root(a: &Dyadic, b: &Dyadic, (sign, q): (i32, &Dyadic)) -> f64 {
+/// A number `sign sqrt(radicand)`; the sign is -1, 0 or 1, the radicand not negative.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SignedRoot<'a> {
+    pub(super) sign: i32,
+    pub(super) radicand: &'a Dyadic,
+}
+
+/// The nearest number of double precision to `(b + root) / a`, which is positive and in the range
+/// of normal numbers; of two that are equally near the even one. `a` is positive.
+pub(super) fn nearest_root(a: &Dyadic, b: &Dyadic, root: SignedRoot) -> f64 {
     /// Bits of the quotient: those of the result, one to round by, and one that says whether more follow.
     const BITS: u64 = 55;
+    let SignedRoot { sign, radicand: q } = root;
     // Binary places with which `b` and `q` are whole.
     let mut places = (-b.exponent).max((1 - q.exponent).div_euclid(2));
     loop {

@@ -118,7 +118,7 @@ pub fn nearest_closely<D: Doubles>(pairs: &Pairs<D>, t: D) -> (D::Mask, D) {
 /// Rounds the distance at which a ray hits a sphere, which it does, to the nearest double; `t` is within 2^-18
 /// of it. `coarse` says that origin and center are, as [`nearest_quickly`] needs them.
 #[inline(always)]
-pub fn nearest(ray: &ExactRay, (center, radius): (DVec3, f64), t: f64, coarse: bool) -> f64 {
+pub fn nearest(ray: &ExactRay, center: DVec3, radius: f64, t: f64, coarse: bool) -> f64 {
     let pairs = Pairs::one(ray, center, radius);
     if coarse {
         let (certain, rounded) = nearest_quickly(&pairs, shortened(t));

@@ -72,6 +72,12 @@ impl Answers for Occlusion<'_> {
     }
 }
 
+/// The rays of a chunk in the tree's units, and what they hit; chunks share the memory.
+struct TracedRays {
+    rays: Rays,
+    hits: ray::Hits,
+}
+
 impl SphereTree {
     /// Traces rays in chunks, and writes the answers of those that hit something; `known` is what they hit in the tree,
     /// if that has been found elsewhere ([`decide_found`]).
@@ -83,8 +89,10 @@ impl SphereTree {
     ) -> Tally {
         let mut tally = Tally::default();
         let count = table.len();
-        let mut rays = Rays::with_capacity(CHUNK.min(count));
-        let mut hits = ray::Hits::with_capacity(CHUNK.min(count));
+        let mut traced = TracedRays {
+            rays: Rays::with_capacity(CHUNK.min(count)),
+            hits: ray::Hits::with_capacity(CHUNK.min(count)),
+        };
         let mut sorted = SortedRays::taken();
         for first in (0..count).step_by(BATCH) {
             let batch = Rows { table, rows: first..count.min(first + BATCH) };
@@ -92,12 +100,13 @@ impl SphereTree {
                 known.is_none() && self.sort_rays(&batch, answers.bounds(), &mut sorted);
             for first in (0..batch.rows.len()).step_by(CHUNK) {
                 let places = first..batch.rows.len().min(first + CHUNK);
-                let traced = (&mut rays, &mut hits, known);
+                let (traced, tally) = (&mut traced, &mut tally);
                 if is_sorted {
-                    self.run_chunk::<Q>(table, &sorted.chunk(places), traced, answers, &mut tally);
+                    let chunk = sorted.chunk(places);
+                    self.run_chunk::<Q>(table, &chunk, traced, known, answers, tally);
                 } else {
                     let chunk = batch.chunk(places);
-                    self.run_chunk::<Q>(table, &chunk, traced, answers, &mut tally);
+                    self.run_chunk::<Q>(table, &chunk, traced, known, answers, tally);
                 }
             }
         }
@@ -111,10 +120,12 @@ impl SphereTree {
         &self,
         table: &impl RayTable,
         chunk: &impl ChunkRays,
-        (rays, hits, known): (&mut Rays, &mut ray::Hits, Option<&[u32]>),
+        traced: &mut TracedRays,
+        known: Option<&[u32]>,
         answers: &mut impl Answers,
         tally: &mut Tally,
     ) {
+        let TracedRays { rays, hits } = traced;
         let loaded = self.load(chunk, answers.bounds(), rays, hits);
         tally.exact += match known {
             Some(known) => decide_found::<Q>(self.tree(), rays, hits, |k| known[chunk.row(k)]),
@@ -144,7 +155,7 @@ impl SphereTree {
                 if !self.spheres.precise.is_empty() {
                     surfaces[i] = self.surface_of_ray(table.row(i), &hit);
                 } else if pending.push(pair, i) {
-                    self.flush_surfaces(&mut pending, (rays, hits), (table, unit), surfaces);
+                    self.flush_surfaces(&mut pending, rays, hits, table, unit, surfaces);
                 }
             }
             for lane in set_bits(alone) {
@@ -164,7 +175,7 @@ impl SphereTree {
             }
         }
         if let Some(surfaces) = answers.surfaces() {
-            self.flush_surfaces(&mut pending, (rays, hits), (table, unit), surfaces);
+            self.flush_surfaces(&mut pending, rays, hits, table, unit, surfaces);
         }
     }
 }

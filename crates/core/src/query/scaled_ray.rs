@@ -114,7 +114,8 @@ impl SphereTree {
         let coarse = self.spheres.coarse
             && origin.as_dvec3() == ray.origin
             && Coordinates::from(origin).is_coarse();
-        intersect::nearest(ray, self.spheres.exact(sphere), t, coarse) * unit
+        let (center, radius) = self.spheres.exact(sphere);
+        intersect::nearest(ray, center, radius, t, coarse) * unit
     }
 
     /// Tests every sphere: for rays from so far away that nothing else can tell, but for those that pass all.
@@ -172,7 +173,7 @@ impl SphereTree {
         let Some(stray) = sphere.checked_sub(self.spheres.len()) else { return hit };
         let (center, radius, _) = self.strays[stray];
         let t = if Q::ROUNDED {
-            intersect::nearest(&scaled.ray, (center, radius), nearest.t, false)
+            intersect::nearest(&scaled.ray, center, radius, nearest.t, false)
         } else {
             nearest.t
         };

@@ -69,8 +69,10 @@ impl SphereTree {
     pub(super) fn flush_surfaces(
         &self,
         pending: &mut PendingSurfaces,
-        (rays, hits): (&Rays, &Hits),
-        (table, unit): (&impl RayTable, impl Fn(usize) -> f64),
+        rays: &Rays,
+        hits: &Hits,
+        table: &impl RayTable,
+        unit: impl Fn(usize) -> f64,
         surfaces: &mut [Surface],
     ) {
         let count = std::mem::take(&mut pending.count);

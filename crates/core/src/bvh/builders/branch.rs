@@ -74,7 +74,8 @@ pub(super) fn grow(
     cut: &impl Cut,
     mut segment: Segment,
     branches: &mut [Branch],
-    (first, depth): (usize, usize),
+    first: usize,
+    depth: usize,
 ) -> Top {
     let leaves = segment.len().div_ceil(LEAF);
     if leaves > 1 && cut.finishes(segment.len()) && depth + leaves <= HEIGHT {
@@ -91,11 +92,11 @@ pub(super) fn grow(
     } else {
         cut.median().cut(&mut segment, first)
     };
-    let (parallel, second) = (segment.len() >= PARALLEL, (first + place, depth + 1));
+    let parallel = segment.len() >= PARALLEL;
     let (left, right) = segment.split_at(place);
     let (below_left, below_right) = below.split_at_mut(place / LEAF - 1);
-    let left = || grow(cut, left, below_left, (first, depth + 1));
-    let right = || grow(cut, right, below_right, second);
+    let left = || grow(cut, left, below_left, first, depth + 1);
+    let right = || grow(cut, right, below_right, first + place, depth + 1);
     let (a, b) = if parallel { rayon::join(left, right) } else { (left(), right()) };
     *root = Branch { top: Top::join(&a, &b), first: (place / LEAF) as u32 };
     root.top

@@ -83,7 +83,7 @@ trait Cut: Sync {
 
     /// Makes all branches over `items`.
     fn finish(&self, segment: Segment, branches: &mut [Branch]) -> Top {
-        branch::grow(self.median(), segment, branches, (0, 0))
+        branch::grow(self.median(), segment, branches, 0, 0)
     }
 }
 
@@ -221,7 +221,7 @@ impl Binary {
         let count = items.len().div_ceil(LEAF).saturating_sub(1);
         let mut branches = collected(count, |_| Branch::NONE);
         if !items.is_empty() {
-            branch::grow(how, Segment::new(items, spare), &mut branches, (0, 0));
+            branch::grow(how, Segment::new(items, spare), &mut branches, 0, 0);
         }
         Self { branches, crowded: how.median().crowded.load(Relaxed) }
     }

@@ -64,7 +64,7 @@ fn count(seed: u64, radius: [f64; 2], away: [f64; 2], part: [f64; 2]) -> Counts 
         let (certain, t) = nearest_closely(&pairs, about);
         assert!(!certain || t == case.t, "close: {t:e}, not {:e}, {:?}", case.t, case.ray);
         counts.close += usize::from(certain);
-        let all = nearest(&case.ray, (case.center, case.radius), about, true);
+        let all = nearest(&case.ray, case.center, case.radius, about, true);
         assert_eq!(all, case.t, "{:?}", case.ray);
     }
     counts
