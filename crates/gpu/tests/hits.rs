@@ -91,7 +91,8 @@ fn build_tree(mut spheres: Spheres) -> (Spheres, Bvh) {
 
 /// Compares answers of a renderer's tree on the device with those of the processor; returns how many were unknown.
 fn compare_tree(
-    (on_device, tree): (&DeviceTree, Tree),
+    on_device: &DeviceTree,
+    tree: Tree,
     rays: &Rays,
     start: &Found,
     any: bool,
@@ -127,11 +128,11 @@ fn compare_workload(device: &Arc<Device>, scene: SphereScene, side: u32, cut: Op
         Some(most) => DeviceTree::cut(device, tree, most).unwrap(),
         None => DeviceTree::new(device, tree).unwrap(),
     };
-    let views = Views::new(scene, (&spheres, &bvh), side);
+    let views = Views::new(scene, tree, side);
     for class in Class::ALL {
         let rays = views.rays(class);
         let start = Found::with_capacity(rays.len());
-        let answered = compare_tree((&on_device, tree), rays, &start, class.is_any());
+        let answered = compare_tree(&on_device, tree, rays, &start, class.is_any());
         let share = answered.unknown as f64 / answered.rays.max(1) as f64;
         let visits = on_device.visits(rays, &start, class.is_any()).unwrap();
         let mean = |kind: usize| {
@@ -234,8 +235,8 @@ fn rays_from_surfaces_and_toward_lights_hit_what_they_hit_on_the_processor() {
             open.sphere[row] = if row % 50 == 0 { 3 } else { MISS };
             shadow.target[row] = random.index(spheres.len()) as u32;
         }
-        all += compare_tree((&on_device, tree), &rays, &start, false);
-        all += compare_tree((&on_device, tree), &shadow, &open, true);
+        all += compare_tree(&on_device, tree, &rays, &start, false);
+        all += compare_tree(&on_device, tree, &shadow, &open, true);
         let found = on_device.find(&rays, &start, false).unwrap();
         answers[0] += found.iter().filter(|&&sphere| sphere < UNKNOWN).count();
         answers[1] += found.iter().filter(|&&sphere| sphere == MISS).count();

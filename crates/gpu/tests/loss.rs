@@ -31,7 +31,7 @@ fn a_device_that_is_taken_away_in_the_middle_loses_no_hit() {
     let mut spheres = scene.spheres().unwrap();
     let bvh = build(&mut spheres, Builder::default());
     let tree = Tree { bvh: &bvh, spheres: &spheres };
-    let views = Views::new(scene, (&spheres, &bvh), 64);
+    let views = Views::new(scene, tree, 64);
     let rays: &Rays = views.rays(Class::Camera);
     let mut expected = Hits::with_capacity(rays.len());
     Tracer::default().closest(tree, rays, &mut expected);

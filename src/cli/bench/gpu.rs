@@ -93,11 +93,11 @@ pub(super) fn measure(options: &Options, progress: Progress) -> Result<Report, B
     let scenes = options.choose(&S::ALL, usual, |scene| scene.name)?;
     let (mut outcomes, mut preparations) = (Vec::new(), Vec::new());
     for scene in scenes {
-        preparations.push(measure_scene(scene, &device, (options, progress), &mut outcomes)?);
+        preparations.push(measure_scene(scene, &device, options, progress, &mut outcomes)?);
     }
     let mut images = Vec::new();
     for scene in pictures(options)? {
-        images.extend(measure_images(&scene, (options, progress))?);
+        images.extend(measure_images(&scene, options, progress)?);
     }
     let AdapterSummary { name, backend, kind, driver, .. } = device.summary();
     let adapter = format!("{name} ({backend}, {kind}, {driver})");
@@ -129,7 +129,8 @@ fn check(device: &Device) -> Result<(), BenchError> {
 fn measure_scene(
     scene: SphereScene,
     device: &Arc<Device>,
-    (options, progress): (&Options, Progress),
+    options: &Options,
+    progress: Progress,
     outcomes: &mut Vec<Outcome>,
 ) -> Result<Preparation, BenchError> {
     progress(&format!("gpu: {}", scene.name));
@@ -138,14 +139,14 @@ fn measure_scene(
     let tree = Tree { bvh: &bvh, spheres: &spheres };
     let (copy, on_device) = once(|| DeviceTree::new(device, tree));
     let on_device = on_device.map_err(|error| BenchError::Device(error.to_string()))?;
-    let views = Views::new(scene, (&spheres, &bvh), options.pick([64, 256, 1024]));
+    let views = Views::new(scene, tree, options.pick([64, 256, 1024]));
     let rays = views.rays(Class::Camera);
     let (first, _) = once(|| trace(&on_device, tree, rays, Class::Camera));
     check(device)?;
     for class in Class::ALL {
         progress(&format!("gpu: {}, {} rays", scene.name, class.name()));
         let rays = views.rays(class);
-        outcomes.push(measure_class((scene, class), (&on_device, tree), rays, options.rounds)?);
+        outcomes.push(measure_class(scene, class, &on_device, tree, rays, options.rounds)?);
     }
     Ok(Preparation { scene, build: seconds, copy, first, bytes: on_device.bytes() })
 }
@@ -180,8 +181,10 @@ fn trace_here(tree: Tree, rays: &Rays, class: Class) -> Hits {
 }
 
 fn measure_class(
-    (scene, class): (SphereScene, Class),
-    (on_device, tree): (&DeviceTree, Tree),
+    scene: SphereScene,
+    class: Class,
+    on_device: &DeviceTree,
+    tree: Tree,
     rays: &Rays,
     rounds: u32,
 ) -> Result<Outcome, BenchError> {
@@ -193,12 +196,12 @@ fn measure_class(
         }
         let (seconds, (hits, share)) = clock(TURN, || trace(on_device, tree, rays, class));
         check(on_device.device())?;
-        compare((scene, class), (&hits, &expected), rays.len())?;
+        compare(scene, class, &hits, &expected, rays.len())?;
         unknown = share;
         let mut hits = Hits::with_capacity(rays.len());
         let timed = on_device.timed(tree, rays, &mut hits, class.is_any());
         let (_, times) = timed.map_err(|error| BenchError::Device(error.to_string()))?;
-        compare((scene, class), (&hits, &expected), rays.len())?;
+        compare(scene, class, &hits, &expected, rays.len())?;
         stages.push(times);
         Ok::<_, BenchError>(seconds)
     })?;
@@ -209,8 +212,10 @@ fn measure_class(
 
 /// Checks that hits are the processor's.
 fn compare(
-    (scene, class): (SphereScene, Class),
-    (found, expected): (&Hits, &Hits),
+    scene: SphereScene,
+    class: Class,
+    found: &Hits,
+    expected: &Hits,
     rays: usize,
 ) -> Result<(), BenchError> {
     let differs = |row: &usize| {
@@ -261,7 +266,8 @@ fn pictures(options: &Options) -> Result<Vec<NamedScene>, BenchError> {
 
 fn measure_images(
     scene: &NamedScene,
-    (options, progress): (&Options, Progress),
+    options: &Options,
+    progress: Progress,
 ) -> Result<Vec<ImageOutcome>, BenchError> {
     let own = scene.world()?;
     let samples = options.pick([32, 256, 1024]);

@@ -49,7 +49,8 @@ const ENOUGH: usize = 2_000_000;
 pub fn measure(
     options: &Options,
     scene: &str,
-    (spheres, sorted): (&Columns, bool),
+    spheres: &Columns,
+    sorted: bool,
 ) -> Result<Builds, Box<dyn Error>> {
     let rows: Vec<_> = (0..spheres.len()).map(|row| spheres.row(row)).collect();
     // Configurations differ in their trees, not in how long these take to build.

@@ -58,7 +58,7 @@ pub struct SingleCalls {
     pub spherule: f64,
 }
 
-/// Who competes in a scene.
+/// Who competes in a scene, and for how long.
 pub struct Contest<'a> {
     pub scene: &'a str,
     pub spheres: &'a Columns,
@@ -69,6 +69,11 @@ pub struct Contest<'a> {
     pub hits_only: bool,
     /// For each of Embree's configurations: spheres as in the file, and along the curve.
     pub embree: &'a [[Scene<'a>; 2]],
+    /// The ways to ask Embree, which run in a first heat.
+    pub entries: &'a [Entry],
+    /// How many of them, the fastest, run in the rounds.
+    pub finalists: u32,
+    pub rounds: u32,
 }
 
 /// Room for answers.
@@ -114,33 +119,33 @@ impl Answers {
 }
 
 impl Contest<'_> {
-    /// Measures one class of rays: a heat of all ways to ask Embree, then rounds of the fastest
-    /// `finalists` and Spherule by turns, for every level.
+    /// Measures one class of rays: a heat of all ways to ask Embree, then rounds of the finalists
+    /// and Spherule by turns, for every level.
     ///
     /// # Errors
     /// Columns of different lengths, or a level that has other answers.
     pub fn run(
         &self,
-        (class, order, rays): (Class, Order, &Rays),
-        entries: &[Entry],
-        (rounds, finalists): (u32, u32),
+        class: Class,
+        order: Order,
+        rays: &Rays,
         runners: &mut [Runner],
     ) -> Result<Outcome, Box<dyn Error>> {
         let mut answers = Answers::new(rays.len());
         let rate = |seconds: f64| rays.len() as f64 / seconds / 1e6;
         let mut heat: Vec<(Entry, f64)> = Vec::new();
-        for &entry in entries {
+        for &entry in self.entries {
             heat.push((entry, rate(self.embree(class, rays, entry, &mut answers))));
         }
         heat.sort_by(|a, b| b.1.total_cmp(&a.1));
         let (_, exact) = self.spherule(class, rays, &mut answers)?;
-        let finalists = &heat[..heat.len().min(finalists as usize)];
+        let finalists = &heat[..heat.len().min(self.finalists as usize)];
         let mut embree = vec![Vec::new(); finalists.len()];
         // Of the ways to ask for one ray, heat decides.
         let one = heat.iter().find(|(entry, _)| entry.width == 1).map(|(entry, _)| *entry);
         let (mut spherule, mut single) = (Vec::new(), [Vec::new(), Vec::new()]);
         let mut levels = vec![Vec::new(); runners.len()];
-        for _ in 0..rounds {
+        for _ in 0..self.rounds {
             for ((entry, _), seconds) in finalists.iter().zip(&mut embree) {
                 seconds.push(self.embree(class, rays, *entry, &mut answers));
             }

@@ -239,21 +239,22 @@ impl Scene<'_> {
     pub fn intersect(&self, rays: &Rays, call: Call, spheres: &mut [u32], t: &mut [f32]) {
         let calls = &self.device.calls;
         let several = [calls.intersect4, calls.intersect8, calls.intersect16];
-        self.dispatch(rays, call, (calls.intersect1, several), Closest { spheres, t });
+        self.dispatch(rays, call, calls.intersect1, several, Closest { spheres, t });
     }
 
     /// Whether each ray hits anything; `occluded` is as long as the columns of rays.
     pub fn occluded(&self, rays: &Rays, call: Call, occluded: &mut [bool]) {
         let calls = &self.device.calls;
         let several = [calls.occluded4, calls.occluded8, calls.occluded16];
-        self.dispatch(rays, call, (calls.occluded1, several), Any(occluded));
+        self.dispatch(rays, call, calls.occluded1, several, Any(occluded));
     }
 
     fn dispatch(
         &self,
         rays: &Rays,
         call: Call,
-        (single, several): (Single, [Several; 3]),
+        single: Single,
+        several: [Several; 3],
         answers: impl Answers,
     ) {
         match call.width {
@@ -269,7 +270,7 @@ impl Scene<'_> {
         let mut packet = Packet::<1>::new();
         let (columns, bounds) = (rays.columns(), rays.bounds());
         for first in 0..rays.len() {
-            packet.fill(&columns, bounds, (first, 1));
+            packet.fill(&columns, bounds, first, 1);
             // SAFETY: scene and packet are valid; one ray's call reads and writes this layout.
             unsafe { single(self.handle, (&raw mut packet).cast(), &raw mut arguments) };
             answers.take(&packet, first, 1);
@@ -288,7 +289,7 @@ impl Scene<'_> {
         let (columns, bounds, count) = (rays.columns(), rays.bounds(), rays.len());
         for first in (0..count).step_by(N) {
             let filled = N.min(count - first);
-            packet.fill(&columns, bounds, (first, filled));
+            packet.fill(&columns, bounds, first, filled);
             let valid = Valid::<N>::first(filled);
             let rows = (&raw mut packet).cast();
             // SAFETY: scene, mask and packet are valid, and as wide and aligned as this call's.

@@ -148,7 +148,8 @@ mod tests {
         /// An NPY array of rows.
         fn npy<const N: usize, T: Copy>(
             name: &str,
-            (kind, bytes): (&str, impl Fn(T) -> Vec<u8>),
+            kind: &str,
+            bytes: impl Fn(T) -> Vec<u8>,
             rows: &[[T; N]],
         ) -> Self {
             let shape = format!("({}, {N})", rows.len());
@@ -189,8 +190,8 @@ mod tests {
     fn spheres_of_arrays_and_raw_numbers_are_those_that_were_written() {
         let raw: Vec<u8> = SPHERES.as_flattened().iter().flat_map(|&x| single(x)).collect();
         let files = [
-            Scratch::npy("spheres.npy", ("<f4", single), &SPHERES),
-            Scratch::npy("wide.npy", ("<f8", double), &SPHERES.map(|row| row.map(f64::from))),
+            Scratch::npy("spheres.npy", "<f4", single, &SPHERES),
+            Scratch::npy("wide.npy", "<f8", double, &SPHERES.map(|row| row.map(f64::from))),
             Scratch::new("spheres.raw", &raw),
         ];
         for file in &files {
@@ -210,15 +211,11 @@ mod tests {
         });
         let eight = seven.map(|[a, b, c, d, e, f, t]| [a, b, c, d, e, f, 0.0, t]);
         let files = [
-            (Scratch::npy("rays6.npy", ("<f8", double), &plain), [f32::INFINITY; 2]),
-            (Scratch::npy("rays7.npy", ("<f8", double), &seven), bounds.map(|t| t as f32)),
-            (Scratch::npy("rays8.npy", ("<f8", double), &eight), bounds.map(|t| t as f32)),
+            (Scratch::npy("rays6.npy", "<f8", double, &plain), [f32::INFINITY; 2]),
+            (Scratch::npy("rays7.npy", "<f8", double, &seven), bounds.map(|t| t as f32)),
+            (Scratch::npy("rays8.npy", "<f8", double, &eight), bounds.map(|t| t as f32)),
             (
-                Scratch::npy(
-                    "single.npy",
-                    ("<f4", single),
-                    &eight.map(|row| row.map(|x| x as f32)),
-                ),
+                Scratch::npy("single.npy", "<f4", single, &eight.map(|row| row.map(|x| x as f32))),
                 bounds.map(|t| t as f32),
             ),
         ];
@@ -239,12 +236,11 @@ mod tests {
     fn errors_name_the_file_the_row_and_the_mend() {
         let mut bad = SPHERES;
         bad[2][3] = -1.0;
-        let negative = Scratch::npy("negative.npy", ("<f4", single), &bad);
+        let negative = Scratch::npy("negative.npy", "<f4", single, &bad);
         bad[2][3] = f32::NAN;
-        let unknown = Scratch::npy("nan.npy", ("<f4", single), &bad);
+        let unknown = Scratch::npy("nan.npy", "<f4", single, &bad);
         let cut = Scratch::new("cut.raw", &[0; 18]);
-        let flat =
-            Scratch::npy("flat.npy", ("<f4", single), &SPHERES.map(|[x, y, z, _]| [x, y, z]));
+        let flat = Scratch::npy("flat.npy", "<f4", single, &SPHERES.map(|[x, y, z, _]| [x, y, z]));
         for (file, says) in [
             (&negative, ["in row 2, the radius is -1", "leave out"]),
             (&unknown, ["in row 2, radius is NaN", "leave out"]),
@@ -267,13 +263,13 @@ mod tests {
             ("never.npy", with(&[(7, f32::NAN)]), ["in row 1, t_max is NaN", "inf"]),
             ("far.npy", with(&[(1, f32::INFINITY)]), ["in row 1, origin y is inf", "scale"]),
         ] {
-            let file = Scratch::npy(name, ("<f4", single), &rows);
+            let file = Scratch::npy(name, "<f4", single, &rows);
             check(&file.0, &rays(&file.0).unwrap_err(), says);
         }
-        let few = Scratch::npy("few.npy", ("<f4", single), &SPHERES);
+        let few = Scratch::npy("few.npy", "<f4", single, &SPHERES);
         let few = rays(&few.0).unwrap_err().to_string();
         assert!(few.contains("few.npy") && few.contains('5'), "{few}");
-        let many = Scratch::npy("many.npy", ("<f4", single), &[[1.0; 9]]);
+        let many = Scratch::npy("many.npy", "<f4", single, &[[1.0; 9]]);
         check(&many.0, &rays(&many.0).unwrap_err(), ["9 columns", "t_max"]);
     }
 

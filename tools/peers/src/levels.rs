@@ -82,7 +82,8 @@ impl Runner {
     /// The program has ended, or has other rays.
     pub fn make_rays(
         &mut self,
-        (class, order): (Class, Order),
+        class: Class,
+        order: Order,
         rays: &Rays,
     ) -> Result<(), Box<dyn Error>> {
         let theirs = self.ask(&format!("rays {} {}", class.name(), order.name()))?;
@@ -172,8 +173,9 @@ pub fn serve(options: &Options) -> Result<(), Box<dyn Error>> {
                 let (class, order) = of.split_once(' ').ok_or("no order")?;
                 let order = Order::from_str(order, true)?;
                 if served.seen.as_ref().is_none_or(|(of, _)| *of != order) {
-                    let picture = (options.side.next_multiple_of(4), order);
-                    let seen = Seen::new(served.flat, &served.spheres, &served.tree, picture)?;
+                    let side = options.side.next_multiple_of(4);
+                    let Served { flat, spheres, tree, .. } = &*served;
+                    let seen = Seen::new(*flat, spheres, tree, side, order)?;
                     served.seen = Some((order, seen));
                 }
                 served.class = Class::from_str(class, true)?;

@@ -51,20 +51,19 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let (mut outcomes, mut builds) = (Vec::new(), Vec::new());
     if let (Some(spheres), Some(rays)) = (&options.spheres, &options.rays) {
         let (spheres, rays) = (files::spheres(spheres)?, files::rays(rays)?);
-        build(options, ("file", &spheres), &mut builds)?;
-        compare(options, ("file", &spheres), |contest, entries| {
+        build(options, "file", &spheres, &mut builds)?;
+        compare(options, "file", &spheres, |contest| {
             for (order, rays) in [(Order::File, &rays), (Order::Random, &rays.shuffled())] {
-                let of = (options.query, order, rays);
-                outcomes.push(run_class(options, of, (contest, entries), &mut [])?);
+                outcomes.push(run_class(contest, options.query, order, rays, &mut [])?);
             }
             Ok(())
         })?;
     } else {
         for &scene in &options.scenes {
             let spheres = Columns::of(scene)?;
-            build(options, (scene.name, &spheres), &mut builds)?;
-            compare(options, (scene.name, &spheres), |contest, entries| {
-                trace(options, scene, (contest, entries), &mut runners, &mut outcomes)
+            build(options, scene.name, &spheres, &mut builds)?;
+            compare(options, scene.name, &spheres, |contest| {
+                trace(options, scene, contest, &mut runners, &mut outcomes)
             })?;
         }
     }
@@ -79,22 +78,24 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
 /// Measures builds, if they are asked for.
 fn build(
     options: &Options,
-    (name, spheres): (&str, &Columns),
+    name: &str,
+    spheres: &Columns,
     builds: &mut Vec<Builds>,
 ) -> Result<(), Box<dyn Error>> {
     if !options.no_builds {
         writeln!(stderr(), "{name}: builds")?;
-        builds.push(builds::measure(options, name, (spheres, false))?);
-        builds.push(builds::measure(options, name, (&spheres.sorted(), true))?);
+        builds.push(builds::measure(options, name, spheres, false)?);
+        builds.push(builds::measure(options, name, &spheres.sorted(), true)?);
     }
     Ok(())
 }
 
-/// Builds both systems' trees over spheres, and calls `run` with them and all ways to ask Embree.
+/// Builds both systems' trees over spheres, and calls `run` with them.
 fn compare(
     options: &Options,
-    (name, spheres): (&str, &Columns),
-    run: impl FnOnce(&Contest, &[Entry]) -> Result<(), Box<dyn Error>>,
+    name: &str,
+    spheres: &Columns,
+    run: impl FnOnce(&Contest) -> Result<(), Box<dyn Error>>,
 ) -> Result<(), Box<dyn Error>> {
     let Columns { x, y, z, radius } = spheres;
     let tree = SphereTree::from_columns(x, y, z, radius)?;
@@ -110,17 +111,24 @@ fn compare(
         Ok([build(&filed)?, build(&sorted)?])
     };
     let embree = devices.iter().map(build).collect::<Result<Vec<_>, _>>()?;
-    let hits_only = options.hits_only;
-    let contest =
-        Contest { scene: name, spheres, tree: &tree, order: &order, hits_only, embree: &embree };
-    run(&contest, &Entry::all(embree.len(), &options.calls))
+    run(&Contest {
+        scene: name,
+        spheres,
+        tree: &tree,
+        order: &order,
+        hits_only: options.hits_only,
+        embree: &embree,
+        entries: &Entry::all(embree.len(), &options.calls),
+        finalists: options.finalists,
+        rounds: options.rounds,
+    })
 }
 
 /// Measures all classes of rays in a scene.
 fn trace(
     options: &Options,
     scene: SphereScene,
-    (contest, entries): (&Contest, &[Entry]),
+    contest: &Contest,
     runners: &mut [Runner],
     outcomes: &mut Vec<Outcome>,
 ) -> Result<(), Box<dyn Error>> {
@@ -128,13 +136,12 @@ fn trace(
         runner.load(scene)?;
     }
     for &order in &options.orders {
-        let picture = (options.side.next_multiple_of(4), order);
-        let seen = Seen::new(scene.flat, contest.spheres, contest.tree, picture)?;
+        let side = options.side.next_multiple_of(4);
+        let seen = Seen::new(scene.flat, contest.spheres, contest.tree, side, order)?;
         for &class in &options.classes {
             let rays = seen.rays(class, order);
             if rays.len() > 0 {
-                let of = (class, order, &*rays);
-                outcomes.push(run_class(options, of, (contest, entries), runners)?);
+                outcomes.push(run_class(contest, class, order, &rays, runners)?);
             }
         }
     }
@@ -143,17 +150,17 @@ fn trace(
 
 /// Measures rays.
 fn run_class(
-    options: &Options,
-    (class, order, rays): (Class, Order, &Rays),
-    (contest, entries): (&Contest, &[Entry]),
+    contest: &Contest,
+    class: Class,
+    order: Order,
+    rays: &Rays,
     runners: &mut [Runner],
 ) -> Result<Outcome, Box<dyn Error>> {
     writeln!(stderr(), "{}: {} rays, {}", contest.scene, class.name(), order.name())?;
     for runner in &mut *runners {
-        runner.make_rays((class, order), rays)?;
+        runner.make_rays(class, order, rays)?;
     }
-    let limits = (options.rounds, options.finalists);
-    contest.run((class, order, rays), entries, limits, runners)
+    contest.run(class, order, rays, runners)
 }
 
 fn json(

@@ -167,7 +167,8 @@ impl Seen {
         flat: bool,
         spheres: &Columns,
         tree: &SphereTree,
-        (side, order): (u32, Order),
+        side: u32,
+        order: Order,
     ) -> Result<Self, QueryError> {
         let primary = camera(flat, spheres, side, order);
         let count = primary.len();
@@ -207,7 +208,7 @@ impl Seen {
         let mut rays = Rays::default();
         for row in 0..self.points.len() * count {
             let point = &self.points[row / count];
-            rays.push(point.origin, above(point.normal.as_vec3(), (seed, row as u64)));
+            rays.push(point.origin, above(point.normal.as_vec3(), seed, row as u64));
         }
         rays
     }
@@ -296,7 +297,7 @@ mod tests {
         let spheres = Columns::of(SphereScene::PAPER400).unwrap();
         let Columns { x, y, z, radius } = &spheres;
         let tree = SphereTree::from_columns(x, y, z, radius).unwrap();
-        let seen = Seen::new(true, &spheres, &tree, (64, Order::Blocks)).unwrap();
+        let seen = Seen::new(true, &spheres, &tree, 64, Order::Blocks).unwrap();
         assert!(seen.points.len() > 400);
         assert_eq!(seen.rays(Class::Ao, Order::Blocks).len(), 4 * seen.points.len());
         let rays = seen.rays(Class::Diffuse, Order::Blocks);

@@ -111,7 +111,8 @@ impl Tracer {
     /// cell. The normal faces the viewer.
     pub(super) fn direct_light(
         &self,
-        (point, normal): (DVec3, DVec3),
+        point: DVec3,
+        normal: DVec3,
         cells: &Cells,
         random: &mut Random,
         rays: &mut u64,

@@ -163,7 +163,7 @@ impl Tracer {
         if surface.diffuse != DVec3::ZERO {
             let facing = if cosine > 0.0 { -normal } else { normal };
             let (random, rays) = (&mut worker.random, &mut worker.rays);
-            let incident = self.direct_light((point, facing), &worker.plan.shadows, random, rays);
+            let incident = self.direct_light(point, facing, &worker.plan.shadows, random, rays);
             light += surface.diffuse * incident;
         }
         if surface.mirror != DVec3::ZERO && worker.survives() {

@@ -12,10 +12,10 @@ use spherule_render::scene::{
 use std::path::Path;
 
 /// Returns a scene of the paper with a small image.
-fn load(name: &str, (width, height): (u32, u32), spp: u32) -> Scene {
+fn load(name: &str, side: u32, spp: u32) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
     let mut scene = Scene::load(&path).unwrap();
-    (scene.settings.width, scene.settings.height, scene.settings.spp) = (width, height, spp);
+    (scene.settings.width, scene.settings.height, scene.settings.spp) = (side, side, spp);
     scene
 }
 
@@ -180,7 +180,7 @@ fn assert_equal_up_to_noise(a: &Image, b: &Image, what: &str) {
 #[test]
 fn images_of_the_papers_scenes_agree() {
     for name in ["paper-two-spheres.toml", "paper-grid-20.toml", "paper-field-20.toml"] {
-        let mut scene = load(name, (60, 60), 16);
+        let mut scene = load(name, 60, 16);
         scene.settings.integrator = Integrator::Whitted { shadow_samples: 6 };
         let ours = render_spherule(&scene);
         let critical = render_paper(&scene, Threading::Critical);
@@ -231,7 +231,7 @@ fn images_with_every_light_agree() {
 
 #[test]
 fn images_are_reproducible_with_independent_rows_or_one_thread() {
-    let scene = load("paper-two-spheres.toml", (16, 16), 2);
+    let scene = load("paper-two-spheres.toml", 16, 2);
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let three = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
     let with =

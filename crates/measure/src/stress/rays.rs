@@ -50,10 +50,10 @@ pub(super) fn ray(recipe: &Recipe, spheres: &[[f32; 4]], random: &mut Random) ->
         Aim::NearOrigin(decades) => perturbed(target, decades, random),
         Aim::Ends => toward_least(&spheres[1..], random),
         aim => {
-            let origin = start(recipe, (target, radius), spheres, random);
+            let origin = start(recipe, target, radius, spheres, random);
             // Rounded as in the result.
             let origin = origin.as_vec3().as_dvec3();
-            (origin, direction(aim, origin, spheres, (target, radius), random) * length)
+            (origin, direction(aim, origin, spheres, target, radius, random) * length)
         }
     };
     Ray { origin: origin.as_vec3().to_array(), direction: direction.as_vec3().to_array() }
@@ -61,7 +61,8 @@ pub(super) fn ray(recipe: &Recipe, spheres: &[[f32; 4]], random: &mut Random) ->
 
 fn start(
     recipe: &Recipe,
-    (center, radius): (DVec3, f64),
+    center: DVec3,
+    radius: f64,
     spheres: &[[f32; 4]],
     random: &mut Random,
 ) -> DVec3 {
@@ -83,7 +84,8 @@ fn direction(
     aim: Aim,
     origin: DVec3,
     spheres: &[[f32; 4]],
-    (center, radius): (DVec3, f64),
+    center: DVec3,
+    radius: f64,
     random: &mut Random,
 ) -> DVec3 {
     let toward = center - origin;

@@ -110,7 +110,7 @@ fn run_scene(regime: &Regime, count: usize, seed: u64) -> RegimeReport {
             count_decision(form, expected, answer.as_ref());
         }
         if i % MEASURED == 0 {
-            measure(&mut report, &spheres, ray, (expected, &answers));
+            measure(&mut report, &spheres, ray, expected, &answers);
             measured.extend(expected.sphere.map(|sphere| (*ray, sphere)));
         }
     }
@@ -134,7 +134,8 @@ fn measure(
     report: &mut RegimeReport,
     spheres: &[[f32; 4]],
     ray: &Ray,
-    (expected, answers): (Decision, &[Option<Answer>; Form::ALL.len()]),
+    expected: Decision,
+    answers: &[Option<Answer>; Form::ALL.len()],
 ) {
     let solution = expected.sphere.and_then(|sphere| reference::solve(spheres[sphere], ray));
     let Some(solution) = solution else { return };

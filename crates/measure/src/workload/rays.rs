@@ -2,7 +2,6 @@
 
 use super::{LIGHT, SphereScene, View, above};
 use glam::{DVec3, Vec3};
-use spherule_render::bvh::Bvh;
 use spherule_render::bvh::{Tracer, Tree};
 use spherule_render::ray::{Hits, MISS, Rays};
 use spherule_render::spheres::Spheres;
@@ -48,14 +47,15 @@ pub struct Views {
 impl Views {
     /// Generates rays for an image of `side` x `side` pixels, a multiple of 4. Rays that start on a
     /// sphere know its row.
-    pub fn new(scene: SphereScene, (spheres, bvh): (&Spheres, &Bvh), side: u32) -> Self {
+    pub fn new(scene: SphereScene, tree: Tree, side: u32) -> Self {
+        let spheres = tree.spheres;
         let camera = camera(scene, spheres, side);
         let mut hits = Hits::with_capacity(camera.len());
-        Tracer::default().closest(Tree { bvh, spheres }, &camera, &mut hits);
+        Tracer::default().closest(tree, &camera, &mut hits);
         let light = LIGHT.normalize();
-        let shadow = leaving(spheres, (&camera, &hits), |_, _| light);
+        let shadow = leaving(spheres, &camera, &hits, |_, _| light);
         let scattered = |seed: u64| {
-            leaving(spheres, (&camera, &hits), |row, normal| above(normal, (seed, row as u64)))
+            leaving(spheres, &camera, &hits, |row, normal| above(normal, seed, row as u64))
         };
         let (occlusion, diffuse) = (scattered(2), scattered(3));
         Self { rays: [camera, shadow, occlusion, diffuse] }
@@ -71,7 +71,8 @@ impl Views {
 /// the horizon are omitted.
 fn leaving(
     spheres: &Spheres,
-    (camera, hits): (&Rays, &Hits),
+    camera: &Rays,
+    hits: &Hits,
     toward: impl Fn(usize, Vec3) -> Vec3,
 ) -> Rays {
     let mut rays = Rays::with_capacity(camera.len());
@@ -111,7 +112,8 @@ mod tests {
     fn rays_start_on_visible_spheres() {
         let mut spheres = SphereScene::PAPER400.spheres().unwrap();
         let bvh = build(&mut spheres, Builder::default());
-        let views = Views::new(SphereScene::PAPER400, (&spheres, &bvh), 32);
+        let tree = Tree { bvh: &bvh, spheres: &spheres };
+        let views = Views::new(SphereScene::PAPER400, tree, 32);
         assert_eq!(views.rays(Class::Camera).len(), 32 * 32);
         for class in [Class::Shadow, Class::Occlusion, Class::Diffuse] {
             let rays = views.rays(class);

@@ -56,7 +56,7 @@ impl View {
 }
 
 /// Returns a cosine-distributed unit direction above a surface, the one with index `row` for `seed`.
-pub fn above(normal: Vec3, (seed, row): (u64, u64)) -> Vec3 {
+pub fn above(normal: Vec3, seed: u64, row: u64) -> Vec3 {
     let u = unit_pair(stream(mix(seed), row));
     Basis::new(normal).to_world(cosine_hemisphere(u)).normalize()
 }
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn directions_above_are_above() {
         let normal = Vec3::new(0.6, 0.0, -0.8);
-        let mean = (0..1000).map(|row| above(normal, (5, row))).sum::<Vec3>() / 1000.0;
+        let mean = (0..1000).map(|row| above(normal, 5, row)).sum::<Vec3>() / 1000.0;
         // The mean of the cosine is 2/3.
         assert!((mean - normal * (2.0 / 3.0)).length() < 0.05, "{mean}");
     }

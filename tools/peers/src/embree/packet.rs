@@ -100,12 +100,7 @@ impl<const N: usize> Packet<N> {
 
     /// Fills the packet with `count` rays from the `first` on; `bounds` are the distances at which searches end, none if it
     /// is empty.
-    pub(super) fn fill(
-        &mut self,
-        rays: &RayColumns,
-        bounds: &[f32],
-        (first, count): (usize, usize),
-    ) {
+    pub(super) fn fill(&mut self, rays: &RayColumns, bounds: &[f32], first: usize, count: usize) {
         let copy = |to: &mut [f32; N], from: &[f32]| match from[first..].first_chunk::<N>() {
             Some(chunk) => *to = *chunk,
             None => to[..count].copy_from_slice(&from[first..][..count]),
@@ -183,9 +178,9 @@ mod tests {
         let numbers: Vec<f32> = (0..6_u8).map(f32::from).collect();
         let rays = RayColumns { origin: [&numbers; 3], direction: [&numbers; 3] };
         let mut packet = Packet::<4>::new();
-        packet.fill(&rays, &numbers, (4, 2));
+        packet.fill(&rays, &numbers, 4, 2);
         assert_eq!(packet.far[..2], [4.0, 5.0]);
-        packet.fill(&rays, &[], (4, 2));
+        packet.fill(&rays, &[], 4, 2);
         assert_eq!((packet.origin_y[..2].to_vec(), packet.far[0]), (vec![4.0, 5.0], f32::INFINITY));
         assert_eq!(Valid::<4>::first(2).0, [-1, -1, 0, 0]);
         packet.primitive[..2].copy_from_slice(&[7, INVALID]);

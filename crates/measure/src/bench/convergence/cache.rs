@@ -22,7 +22,8 @@ const FORMAT: u32 = 2;
 pub(super) fn load_or_render(
     folder: &Path,
     scene: &NamedScene,
-    (settings, sample): (&Settings, &Image),
+    settings: &Settings,
+    sample: &Image,
     render: impl FnOnce() -> Result<Image, BenchError>,
 ) -> Result<Image, BenchError> {
     let digest = digest(scene, settings, sample);
@@ -89,7 +90,7 @@ mod tests {
         let render = |x: f32| move || Ok(Image::filled(2, 2, [x; 3])?);
         let of = |settings: &Settings, sample, x| {
             let sample = Image::filled(2, 2, [sample; 3]).unwrap();
-            load_or_render(folder.path(), &scene, (settings, &sample), render(x)).unwrap().pixels[0]
+            load_or_render(folder.path(), &scene, settings, &sample, render(x)).unwrap().pixels[0]
                 [0]
         };
         let first = |x| of(settings, 0.5, x);

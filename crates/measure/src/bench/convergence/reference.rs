@@ -54,7 +54,7 @@ impl Reference {
             let settings = Settings { spp: samples, seed, ..own.clone() };
             match folder.zip(sample.as_ref()) {
                 Some((folder, sample)) => {
-                    cache::load_or_render(folder, scene, (&settings, sample), || image(&settings))
+                    cache::load_or_render(folder, scene, &settings, sample, || image(&settings))
                 }
                 None => image(&settings),
             }

@@ -191,7 +191,7 @@ mod tests {
 
     #[test]
     fn images_of_different_scenes_do_not_agree() {
-        let setup = |scene: PaperScene| SceneSetup::new(&scene.scene((48, 16)).unwrap()).unwrap();
+        let setup = |scene: PaperScene| SceneSetup::new(&scene.scene(48, 16).unwrap()).unwrap();
         let (mut grid, field) = (setup(PaperScene::GRID), setup(PaperScene::FIELD));
         let agreement = |setup: &SceneSetup| {
             setup.agreement(Program::Paper(Threading::Independent), &setup.settings)

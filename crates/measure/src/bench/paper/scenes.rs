@@ -38,15 +38,16 @@ impl PaperScene {
     pub const ALL: [Self; 3] = [Self::TWO, Self::GRID, Self::FIELD];
 
     /// Returns the scene of the file with `size` x `size` pixels and `spp` samples per pixel.
-    pub(crate) fn scene(&self, (size, spp): (u32, u32)) -> Result<Scene, BenchError> {
+    pub(crate) fn scene(&self, size: u32, spp: u32) -> Result<Scene, BenchError> {
         let mut scene = Scene::parse(self.text, self.name, Path::new(""))?;
         scene.settings = Settings { width: size, height: size, spp, ..scene.settings };
         Ok(scene)
     }
 
-    /// Returns the grid with `count` x `count` spheres, scaled to fill the same square.
-    pub(crate) fn grid(count: u64, scale: (u32, u32)) -> Result<Scene, BenchError> {
-        let mut scene = Self::GRID.scene(scale)?;
+    /// Returns the grid with `count` x `count` spheres, scaled to fill the same square; `size` and
+    /// `spp` are those of [`PaperScene::scene`].
+    pub(crate) fn grid(count: u64, size: u32, spp: u32) -> Result<Scene, BenchError> {
+        let mut scene = Self::GRID.scene(size, spp)?;
         let is_emitter = |row: &u32| {
             let named = scene.materials.get(*row as usize);
             named.is_some_and(|named| matches!(named.material, Material::Emitter { .. }))
@@ -78,14 +79,14 @@ mod tests {
 
     #[test]
     fn a_grid_of_twenty_is_the_files_own() {
-        let file = PaperScene::GRID.scene((512, 16)).unwrap();
-        let generated = PaperScene::grid(20, (512, 16)).unwrap();
+        let file = PaperScene::GRID.scene(512, 16).unwrap();
+        let generated = PaperScene::grid(20, 512, 16).unwrap();
         assert_eq!((file.spheres, file.settings), (generated.spheres, generated.settings));
     }
 
     #[test]
     fn finer_grids_fill_the_same_square() {
-        let scene = PaperScene::grid(50, (8, 1)).unwrap();
+        let scene = PaperScene::grid(50, 8, 1).unwrap();
         assert_eq!((scene.spheres.len(), scene.settings.width), (1 + 2500, 8));
         let extent = scene.spheres.x[1..].iter().copied().fold(0.0, f64::max);
         assert!((extent + scene.spheres.radius[1] / 0.8 - SIDE / 2.0).abs() < 1e-9, "{extent}");

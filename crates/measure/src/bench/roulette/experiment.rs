@@ -76,17 +76,17 @@ impl Experiment {
             images[index].push(rendered?.0);
             Ok::<_, BenchError>(seconds)
         })?;
-        let outcomes = entries
-            .iter()
-            .zip(&images)
-            .enumerate()
-            .map(|(index, (entry, images))| self.outcome(*entry, times.seconds(index), images));
+        let outcomes =
+            entries.iter().zip(&images).enumerate().map(|(index, (&(strategy, spp), images))| {
+                self.outcome(strategy, spp, times.seconds(index), images)
+            });
         outcomes.collect()
     }
 
     fn outcome(
         &self,
-        (strategy, spp): (Strategy, u32),
+        strategy: Strategy,
+        spp: u32,
         seconds: Spread,
         images: &[Image],
     ) -> Result<Outcome, BenchError> {
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn a_wrong_reference_is_reported_as_bias() {
-        let scene = PaperScene::TWO.scene((24, 4)).unwrap();
+        let scene = PaperScene::TWO.scene(24, 4).unwrap();
         let mut experiment = Experiment::new(&scene, 256, 2).unwrap();
         let entry = [(STRATEGIES[3], 4)];
         assert!(experiment.run(&entry).unwrap()[0].check().is_ok());
@@ -167,7 +167,7 @@ mod tests {
 
     #[test]
     fn four_times_the_samples_have_half_the_error() {
-        let scene = PaperScene::GRID.scene((32, 1)).unwrap();
+        let scene = PaperScene::GRID.scene(32, 1).unwrap();
         let mut experiment = Experiment::new(&scene, 256, 2).unwrap();
         experiment.setup.settings.sampler = SamplerKind::Independent;
         let outcomes = experiment.run(&[1, 4].map(|spp| (STRATEGIES[3], spp))).unwrap();

@@ -89,12 +89,12 @@ fn measure_scene(
     let mut trees = Vec::new();
     for (builder, _) in BUILDERS {
         let tree = BuiltTree::new(scene, builder)?;
-        let views = Views::new(scene, (&tree.spheres, &tree.bvh), side);
+        let views = Views::new(scene, tree.view(), side);
         trees.push((tree, views));
     }
     let outcome = |class: Class| {
         progress(&format!("traversal: {}, {} rays", scene.name, class.name()));
-        measure_class((scene, class), &trees, options.rounds)
+        measure_class(scene, class, &trees, options.rounds)
     };
     Class::ALL.into_iter().map(outcome).collect()
 }
@@ -103,7 +103,8 @@ fn measure_scene(
 const BEST: usize = 1;
 
 fn measure_class(
-    (scene, class): (SphereScene, Class),
+    scene: SphereScene,
+    class: Class,
     trees: &[(BuiltTree, Views)],
     rounds: u32,
 ) -> Result<Outcome, BenchError> {
@@ -122,7 +123,7 @@ fn measure_class(
             return Ok(f64::NAN);
         }
         let (seconds, hits) = clock(TURN, || variant.run(any, best.view(), rays));
-        check(variant, (&hits, &expected), rays.len(), class)
+        check(variant, &hits, &expected, rays.len(), class)
             .map_err(|fault| BenchError::Differ(format!("{}: {fault}", scene.name)))?;
         Ok(seconds)
     })?;
@@ -138,7 +139,8 @@ fn measure_class(
 /// Checks that a variant found the hits of single rays.
 fn check(
     variant: &Variant,
-    (found, expected): (&Hits, &Hits),
+    found: &Hits,
+    expected: &Hits,
     rays: usize,
     class: Class,
 ) -> Result<(), String> {
@@ -179,10 +181,10 @@ mod tests {
     #[test]
     fn wrong_hits_are_reported() {
         let (mut found, expected) = (Hits::with_capacity(8), Hits::with_capacity(8));
-        assert!(check(&VARIANTS[0], (&found, &expected), 8, Class::Camera).is_ok());
+        assert!(check(&VARIANTS[0], &found, &expected, 8, Class::Camera).is_ok());
         found.set(3, 1.0, 7);
-        let message = check(&VARIANTS[AUTO], (&found, &expected), 8, Class::Shadow).unwrap_err();
+        let message = check(&VARIANTS[AUTO], &found, &expected, 8, Class::Shadow).unwrap_err();
         assert!(message.contains("1 of 8 shadow rays") && message.contains("auto"), "{message}");
-        assert!(check(&VARIANTS[7], (&found, &expected), 8, Class::Camera).is_err());
+        assert!(check(&VARIANTS[7], &found, &expected, 8, Class::Camera).is_err());
     }
 }

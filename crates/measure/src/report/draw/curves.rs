@@ -49,7 +49,7 @@ pub(super) fn layout(plot: &Plot) -> Canvas {
     };
     axes(&mut canvas, plot, &plane);
     for (index, series) in plot.series.iter().enumerate() {
-        draw(&mut canvas, (index, series), &plane);
+        draw(&mut canvas, index, series, &plane);
     }
     legend_entries(&mut canvas, plot, &plane);
     canvas.text(plot.note.as_str(), (MARGIN, HEIGHT - 30.0), 18.0, Align::Left);
@@ -73,7 +73,7 @@ fn axes(canvas: &mut Canvas, plot: &Plot, plane: &Plane) {
     canvas.text(plot.value.heading(), (MARGIN, TOP - 34.0), FONT_SIZE, Align::Left);
 }
 
-fn draw(canvas: &mut Canvas, (index, series): (usize, &Series), plane: &Plane) {
+fn draw(canvas: &mut Canvas, index: usize, series: &Series, plane: &Plane) {
     let number = legend::number(series, index);
     let visible = |point: &&_| is_visible(plane, point);
     let points: Vec<_> = series.points.iter().filter(visible).collect();
@@ -85,7 +85,7 @@ fn draw(canvas: &mut Canvas, (index, series): (usize, &Series), plane: &Plane) {
         _ => {}
     }
     for (point, &at) in points.iter().zip(&at) {
-        bar(canvas, number, (at.0, point.value), plane);
+        bar(canvas, number, at.0, point.value, plane);
         if series.marked {
             canvas.mark(number, at, MARK);
         }
@@ -97,7 +97,7 @@ fn is_visible(plane: &Plane, point: &crate::report::Point) -> bool {
 }
 
 /// Draws an error bar if it is long enough to be visible.
-fn bar(canvas: &mut Canvas, number: usize, (x, value): (f64, Spread), plane: &Plane) {
+fn bar(canvas: &mut Canvas, number: usize, x: f64, value: Spread, plane: &Plane) {
     let (low, high) = (plane.y(value.least), plane.y(value.greatest));
     if low - high <= 2.0 {
         return;
@@ -116,8 +116,8 @@ fn legend_entries(canvas: &mut Canvas, plot: &Plot, plane: &Plane) {
     };
     let mut order: Vec<_> = plot.series.iter().enumerate().collect();
     order.sort_by(|a, b| end(a.1).total_cmp(&end(b.1)));
-    for (line, entry) in order.into_iter().enumerate() {
+    for (line, (index, series)) in order.into_iter().enumerate() {
         let at = (plane.right + legend::SAMPLE + 10.0, TOP + 10.0 + ENTRY * line as f64);
-        legend::entry(canvas, entry, at, MARK);
+        legend::entry(canvas, index, series, at, MARK);
     }
 }

@@ -33,7 +33,7 @@ pub(super) fn layout(plot: &Plot, names: &[String]) -> Canvas {
     canvas.heading(&plot.title, &plot.about);
     let (places, lines) = legend::rows(&plot.series, MARGIN + 16.0, 122.0);
     for (i, (series, at)) in plot.series.iter().zip(places).enumerate() {
-        legend::entry(&mut canvas, (i, series), at, size(i, plot));
+        legend::entry(&mut canvas, i, series, at, size(i, plot));
     }
     let top = 150.0 + 34.0 * lines as f64;
     let longest = names.iter().map(|name| width(name, FONT_SIZE)).fold(0.0, f64::max);
@@ -53,7 +53,7 @@ pub(super) fn layout(plot: &Plot, names: &[String]) -> Canvas {
     let scale = AxisScale::new(&plot.value, values);
     axis(&mut canvas, plot, &scale, &layout);
     for (line, name) in names.iter().enumerate() {
-        row(&mut canvas, (line, name), plot, (&scale, &layout));
+        row(&mut canvas, line, name, plot, &scale, &layout);
     }
     canvas.height = layout.bottom + if plot.note.is_empty() { 90.0 } else { 130.0 };
     if !plot.note.is_empty() {
@@ -111,9 +111,11 @@ fn axis(canvas: &mut Canvas, plot: &Plot, scale: &AxisScale, layout: &Layout) {
 
 fn row(
     canvas: &mut Canvas,
-    (line, name): (usize, &str),
+    line: usize,
+    name: &str,
     plot: &Plot,
-    (scale, layout): (&AxisScale, &Layout),
+    scale: &AxisScale,
+    layout: &Layout,
 ) {
     let y = layout.top + layout.line * (line as f64 + 0.5);
     if layout.step > 0.0 && line > 0 {

@@ -12,12 +12,7 @@ pub(super) fn number(series: &Series, index: usize) -> usize {
 }
 
 /// Draws an entry: a sample centered at `at`, and the name to its right.
-pub(super) fn entry(
-    canvas: &mut Canvas,
-    (index, series): (usize, &Series),
-    at: Position,
-    radius: f64,
-) {
+pub(super) fn entry(canvas: &mut Canvas, index: usize, series: &Series, at: Position, radius: f64) {
     let number = number(series, index);
     let ends = vec![(at.0 - 16.0, at.1), (at.0 + 16.0, at.1)];
     match series.line {

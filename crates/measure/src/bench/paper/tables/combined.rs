@@ -11,34 +11,48 @@ use spherule_render::scene::{Roulette, Settings};
 /// Bounds of the growth with four times as many pixels within which times are extrapolated.
 const LINEAR: [f64; 2] = [0.8 * 4.0, 1.25 * 4.0];
 
-/// A name, a program, the probability of surviving a bounce, and whether all threads render.
-type Step = (&'static str, Program, f64, bool);
+/// A program with one more optimization than the last.
+struct Step {
+    name: &'static str,
+    program: Program,
+    /// Probability of surviving a bounce.
+    p: f64,
+    /// True if all threads render.
+    parallel: bool,
+}
+
+impl Step {
+    const fn new(name: &'static str, program: Program, p: f64, parallel: bool) -> Self {
+        Self { name, program, p, parallel }
+    }
+}
 
 /// The optimizations, one after another.
 const STEPS: [Step; 6] = [
-    ("plain", Program::Brute(Threading::Critical), 1.0, false),
-    ("with roulette", Program::Brute(Threading::Critical), 0.9, false),
-    ("with threads", Program::Brute(Threading::Critical), 0.9, true),
-    ("with the tree", Program::Paper(Threading::Critical), 0.9, true),
-    ("without critical sections", Program::Paper(Threading::Independent), 0.9, true),
-    ("Spherule", Program::Spherule, 0.9, true),
+    Step::new("plain", Program::Brute(Threading::Critical), 1.0, false),
+    Step::new("with roulette", Program::Brute(Threading::Critical), 0.9, false),
+    Step::new("with threads", Program::Brute(Threading::Critical), 0.9, true),
+    Step::new("with the tree", Program::Paper(Threading::Critical), 0.9, true),
+    Step::new("without critical sections", Program::Paper(Threading::Independent), 0.9, true),
+    Step::new("Spherule", Program::Spherule, 0.9, true),
 ];
 
 /// Measures all optimizations on the random field of 20 x 20 spheres.
 pub(crate) fn combined(plan: &Plan) -> Result<Table, BenchError> {
     (plan.progress)("paper: Table 4, all changes combined");
     let threads = plan.options.threads;
-    let field = |size| SceneSetup::new(&PaperScene::FIELD.scene((size, plan.spp))?);
+    let field = |size| SceneSetup::new(&PaperScene::FIELD.scene(size, plan.spp)?);
     let (setup, quarter) = (field(plan.size)?, field(plan.size.div_ceil(2))?);
-    let entries = [&setup, &quarter].map(|setup| STEPS.map(|step| entry(setup, step, threads)));
+    let entries = [&setup, &quarter].map(|setup| STEPS.map(|step| entry(setup, &step, threads)));
     let times = time_entries(plan.options.rounds, entries.as_flattened())?;
     let title = "Table 4. All optimizations combined: the random field of 20 x 20 spheres";
     let mut table = Table::new("paper-together", title, columns());
-    let samples = |(size, spp): (u32, u32)| f64::from(size).powi(2) * f64::from(spp);
-    let factor = samples(FULL) / samples(plan.scale());
+    let samples = |size: u32, spp: u32| f64::from(size).powi(2) * f64::from(spp);
+    let measured = samples(plan.size, plan.spp);
+    let factor = samples(FULL.0, FULL.1) / measured;
     // Not quite four for odd sizes.
-    let pixels = samples(plan.scale()) / samples((plan.size.div_ceil(2), plan.spp));
-    for (row, (name, program, p, _)) in STEPS.into_iter().enumerate() {
+    let pixels = measured / samples(plan.size.div_ceil(2), plan.spp);
+    for (row, Step { name, program, p, .. }) in STEPS.into_iter().enumerate() {
         let growth = times.ratio(STEPS.len() + row, row).median * 4.0 / pixels;
         let is_linear = factor == 1.0 || (LINEAR[0]..=LINEAR[1]).contains(&growth);
         let full = is_linear.then(|| times.seconds(row).times(factor));
@@ -58,13 +72,13 @@ pub(crate) fn combined(plan: &Plan) -> Result<Table, BenchError> {
         ];
         table.push(cells.into_iter().chain(agreement.iter().flat_map(Agreement::cells)));
     }
-    table.notes = notes(plan.scale(), factor);
+    table.notes = notes(plan, factor);
     Ok(table)
 }
 
-fn entry(setup: &SceneSetup, (_, program, p, parallel): Step, threads: usize) -> Entry<'_> {
-    let settings = Settings { roulette: Roulette::Fixed(p), ..setup.settings.clone() };
-    Entry { settings, ..setup.entry(program, if parallel { threads } else { 1 }) }
+fn entry<'a>(setup: &'a SceneSetup, step: &Step, threads: usize) -> Entry<'a> {
+    let settings = Settings { roulette: Roulette::Fixed(step.p), ..setup.settings.clone() };
+    Entry { settings, ..setup.entry(step.program, if step.parallel { threads } else { 1 }) }
 }
 
 fn columns() -> Vec<Column> {
@@ -88,8 +102,8 @@ fn columns() -> Vec<Column> {
     columns
 }
 
-fn notes((size, spp): (u32, u32), factor: f64) -> Vec<String> {
-    let (full, full_spp) = FULL;
+fn notes(plan: &Plan, factor: f64) -> Vec<String> {
+    let (Plan { size, spp, .. }, (full, full_spp)) = (plan, FULL);
     let scale = if factor == 1.0 {
         format!(
             "{full} x {full} pixels with {full_spp} samples, as in the paper; nothing is extrapolated."

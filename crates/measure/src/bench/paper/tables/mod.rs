@@ -25,12 +25,6 @@ pub(super) struct Plan<'a> {
     pub(super) progress: Progress<'a>,
 }
 
-impl Plan<'_> {
-    fn scale(&self) -> (u32, u32) {
-        (self.size, self.spp)
-    }
-}
-
 impl SceneSetup {
     /// Returns the entry of a program with the scene's settings.
     fn entry(&self, program: Program, threads: usize) -> Entry<'_> {

@@ -14,7 +14,7 @@ pub(crate) const PROBABILITIES: [f64; 3] = [1.0, 0.9, 0.5];
 /// Renders two mirrors that reflect each other with one ray per pixel, as in the paper, on one thread.
 pub(crate) fn roulette(plan: &Plan) -> Result<Table, BenchError> {
     (plan.progress)("paper: Table 1, roulette");
-    let setup = SceneSetup::new(&PaperScene::TWO.scene((plan.size, 1))?)?;
+    let setup = SceneSetup::new(&PaperScene::TWO.scene(plan.size, 1)?)?;
     let programs = [Program::Paper(Threading::Critical), Program::Spherule];
     let entries: Vec<Entry> = PROBABILITIES
         .iter()

@@ -69,7 +69,7 @@ pub(crate) fn spheres(plan: &Plan) -> Result<(Table, Plot), BenchError> {
 }
 
 fn row(plan: &Plan, count: u64) -> Result<Row, BenchError> {
-    let scene = PaperScene::grid(count, plan.scale())?;
+    let scene = PaperScene::grid(count, plan.size, plan.spp)?;
     let setup = SceneSetup::new(&scene)?;
     let (_, rays) = setup.render(Program::Spherule, &setup.settings)?;
     let brute = rays.saturating_mul(count * count) <= plan.options.pick(MAX_TESTS);

@@ -21,7 +21,7 @@ const GRAY: usize = 7;
 /// Measures the speedup of the random field on 1, 2, 4, ... threads and on all.
 pub(crate) fn threads(plan: &Plan) -> Result<(Table, Plot), BenchError> {
     (plan.progress)("paper: Table 2, threads");
-    let setup = SceneSetup::new(&PaperScene::FIELD.scene(plan.scale())?)?;
+    let setup = SceneSetup::new(&PaperScene::FIELD.scene(plan.size, plan.spp)?)?;
     let counts = counts(plan.options.threads);
     let entries: Vec<_> = counts
         .iter()
