@@ -159,7 +159,7 @@ impl Columns {
     /// Gives kernels the numbers of a bounce, by its place among those that were written, and a queue without shadow rays.
     pub(crate) fn set_bounce(&self, work: &mut Work, place: usize) {
         let bytes = self.params.size();
-        work.copy((&self.bounces, bytes * place as u64), &self.params, bytes);
+        work.copy(&self.bounces, bytes * place as u64, &self.params, bytes);
         self.clear(work, &self.shadows.queue);
     }
 
@@ -175,12 +175,12 @@ impl Columns {
 
     /// Empties the queue of a kind of material.
     pub(crate) fn clear_kind(&self, work: &mut Work, kind: MaterialKind) {
-        work.copy_to(&self.empty_head, (&self.kind_queues, self.kind_offset(kind)));
+        work.copy_to(&self.empty_head, &self.kind_queues, self.kind_offset(kind));
     }
 
     /// Empties a queue.
     pub(crate) fn clear(&self, work: &mut Work, queue: &wgpu::Buffer) {
-        work.copy((&self.empty_head, 0), queue, self.empty_head.size());
+        work.copy(&self.empty_head, 0, queue, self.empty_head.size());
     }
 
     /// Returns the head of a queue with so many rows.

@@ -263,7 +263,8 @@ impl Device {
     /// Compiles a kernel; `constants` are its overrides.
     pub(crate) fn kernel(
         &self,
-        (name, source): (&str, &str),
+        name: &str,
+        source: &str,
         constants: &[(&str, f64)],
     ) -> Result<wgpu::ComputePipeline, DeviceError> {
         let module = self.handle.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -306,11 +307,11 @@ impl Device {
     }
 
     /// Binds buffers to a kernel, in their order.
-    pub(crate) fn bind(
+    pub(crate) fn bind<'a>(
         &self,
-        kernel: &wgpu::ComputePipeline,
+        kernel: &'a wgpu::ComputePipeline,
         buffers: &[&wgpu::Buffer],
-    ) -> wgpu::BindGroup {
+    ) -> BoundKernel<'a> {
         let entries: Vec<_> = (0..)
             .zip(buffers)
             .map(|(binding, buffer)| wgpu::BindGroupEntry {
@@ -318,11 +319,12 @@ impl Device {
                 resource: buffer.as_entire_binding(),
             })
             .collect();
-        self.handle.create_bind_group(&wgpu::BindGroupDescriptor {
+        let group = self.handle.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &kernel.get_bind_group_layout(0),
             entries: &entries,
-        })
+        });
+        BoundKernel { kernel, group }
     }
 
     /// Returns a list of work, to which kernels and copies are added.
@@ -341,12 +343,14 @@ impl Device {
     /// Runs a kernel in groups of 64 invocations, and copies the first bytes of a buffer to another.
     pub(crate) fn dispatch(
         &self,
-        (kernel, group): (&wgpu::ComputePipeline, &wgpu::BindGroup),
+        kernel: &BoundKernel,
         invocations: usize,
-        (from, to, bytes): (&wgpu::Buffer, &wgpu::Buffer, u64),
+        from: &wgpu::Buffer,
+        to: &wgpu::Buffer,
+        bytes: u64,
     ) -> Submitted {
         self.submit(|encoder| {
-            pass(encoder, (kernel, group), Size::Rows(invocations), None);
+            pass(encoder, kernel, Size::Rows(invocations), None);
             encoder.copy_buffer_to_buffer(from, 0, to, 0, bytes);
         })
     }
@@ -355,7 +359,7 @@ impl Device {
     /// `None` if it has no clock, and then does not run it.
     pub(crate) fn clock(
         &self,
-        (kernel, group): (&wgpu::ComputePipeline, &wgpu::BindGroup),
+        kernel: &BoundKernel,
         invocations: usize,
     ) -> Result<Option<Duration>, DeviceError> {
         const RUNS: usize = 15;
@@ -375,13 +379,13 @@ impl Device {
         let submitted = self.submit(|encoder| {
             for run in 0..RUNS as u32 {
                 let ticks = Some((&set, 2 * run));
-                pass(encoder, (kernel, group), Size::Rows(invocations), ticks);
+                pass(encoder, kernel, Size::Rows(invocations), ticks);
             }
             encoder.resolve_query_set(&set, 0..2 * RUNS as u32, &ticks, 0);
             encoder.copy_buffer_to_buffer(&ticks, 0, &copy, 0, BYTES);
         });
         let mut read = [[0_u64; 2]; RUNS];
-        self.read((&copy, BYTES), submitted, |view| read = bytemuck::pod_read_unaligned(view))?;
+        self.read(&copy, BYTES, submitted, |view| read = bytemuck::pod_read_unaligned(view))?;
         let mut ticks = read.map(|[start, end]| end.saturating_sub(start));
         ticks.sort_unstable();
         let nanoseconds = ticks[RUNS / 2] as f64 * f64::from(self.queue.get_timestamp_period());
@@ -391,13 +395,14 @@ impl Device {
     /// Reads the first bytes of a buffer, by way of one that can be read.
     pub(crate) fn read_rows(
         &self,
-        (buffer, copy): (&wgpu::Buffer, &wgpu::Buffer),
+        buffer: &wgpu::Buffer,
+        copy: &wgpu::Buffer,
         rows: &mut [u8],
     ) -> Result<(), DeviceError> {
         let bytes = rows.len() as u64;
         let mut work = self.work();
-        work.copy((buffer, 0), copy, bytes);
-        self.read((copy, bytes), work.submit(), |view| rows.copy_from_slice(view))
+        work.copy(buffer, 0, copy, bytes);
+        self.read(copy, bytes, work.submit(), |view| rows.copy_from_slice(view))
     }
 
     /// Waits for all that the device was asked to do, writes to buffers included.
@@ -418,7 +423,8 @@ impl Device {
     /// Hands over the first bytes of a buffer that can be mapped, once what was submitted until then is done.
     pub(crate) fn read(
         &self,
-        (buffer, bytes): (&wgpu::Buffer, u64),
+        buffer: &wgpu::Buffer,
+        bytes: u64,
         submitted: Submitted,
         mut take: impl FnMut(&[u8]),
     ) -> Result<(), DeviceError> {
@@ -457,6 +463,13 @@ impl std::fmt::Debug for Device {
     }
 }
 
+/// A kernel and the buffers that it is bound to.
+#[derive(Debug)]
+pub(crate) struct BoundKernel<'a> {
+    kernel: &'a wgpu::ComputePipeline,
+    group: wgpu::BindGroup,
+}
+
 /// Rows that a kernel runs for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Size<'a> {
@@ -483,23 +496,17 @@ impl Work<'_> {
         size: Size,
     ) -> Result<(), DeviceError> {
         let kernel = self.device.compiled(kernel)?;
-        let group = self.device.bind(kernel, buffers);
-        pass(&mut self.encoder, (kernel, &group), size, None);
+        pass(&mut self.encoder, &self.device.bind(kernel, buffers), size, None);
         Ok(())
     }
 
     /// Adds a copy of bytes of a buffer, from an offset on, to the start of another.
-    pub(crate) fn copy(
-        &mut self,
-        (from, offset): (&wgpu::Buffer, u64),
-        to: &wgpu::Buffer,
-        bytes: u64,
-    ) {
+    pub(crate) fn copy(&mut self, from: &wgpu::Buffer, offset: u64, to: &wgpu::Buffer, bytes: u64) {
         self.encoder.copy_buffer_to_buffer(from, offset, to, 0, bytes);
     }
 
     /// Adds a copy of a buffer to another, from an offset on.
-    pub(crate) fn copy_to(&mut self, from: &wgpu::Buffer, (to, offset): (&wgpu::Buffer, u64)) {
+    pub(crate) fn copy_to(&mut self, from: &wgpu::Buffer, to: &wgpu::Buffer, offset: u64) {
         self.encoder.copy_buffer_to_buffer(from, 0, to, offset, from.size());
     }
 
@@ -518,7 +525,7 @@ pub(crate) fn groups(rows: usize) -> u32 {
 /// place for them.
 fn pass(
     encoder: &mut wgpu::CommandEncoder,
-    (kernel, group): (&wgpu::ComputePipeline, &wgpu::BindGroup),
+    kernel: &BoundKernel,
     size: Size,
     ticks: Option<(&wgpu::QuerySet, u32)>,
 ) {
@@ -529,8 +536,8 @@ fn pass(
     });
     let mut pass =
         encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
-    pass.set_pipeline(kernel);
-    pass.set_bind_group(0, group, &[]);
+    pass.set_pipeline(kernel.kernel);
+    pass.set_bind_group(0, &kernel.group, &[]);
     match size {
         Size::Rows(rows) => pass.dispatch_workgroups(groups(rows), 1, 1),
         Size::Queue(queue) => pass.dispatch_workgroups_indirect(queue, 0),

@@ -23,15 +23,15 @@ pub(crate) fn add_up(
     let rows: &mut [u8] = bytemuck::cast_slice_mut(&mut found.pixels);
     let to_read = &columns.pixel_sums_to_read;
     let bytes = rows.len() as u64;
-    work.copy((pixel_sums, 0), to_read, bytes);
-    device.read((to_read, bytes), work.submit(), |view| rows.copy_from_slice(view))?;
+    work.copy(pixel_sums, 0, to_read, bytes);
+    device.read(to_read, bytes, work.submit(), |view| rows.copy_from_slice(view))?;
     let unsummed = found.pixels.iter().filter(|pixel| pixel.place().is_some()).count();
     found.samples.resize(unsummed * samples, DevicePath::default());
     if unsummed == 0 {
         return Ok(());
     }
     let rows = bytemuck::cast_slice_mut(&mut found.samples);
-    device.read_rows((left, &columns.samples_to_read), rows)
+    device.read_rows(left, &columns.samples_to_read, rows)
 }
 
 #[cfg(test)]

@@ -143,7 +143,7 @@ fn read_column<T: Pod>(
     let mut read = vec![T::zeroed(); rows];
     let bytes = (size_of::<T>() * rows) as u64;
     let copy = device.buffer("rows to read", bytes, Usage::MAP_READ | Usage::COPY_DST)?;
-    device.read_rows((column, &copy), bytemuck::cast_slice_mut(&mut read))?;
+    device.read_rows(column, &copy, bytemuck::cast_slice_mut(&mut read))?;
     Ok(read)
 }
 
@@ -452,14 +452,14 @@ impl JobPaths {
                 queue = 1 - queue;
             }
             let bytes = columns.head_to_read.size();
-            work.copy((&columns.queues[queue], 0), &columns.head_to_read, bytes);
+            work.copy(&columns.queues[queue], 0, &columns.head_to_read, bytes);
             let submitted = work.submit();
             if depth - params.bounce < BOUNCES as u32 {
                 return Ok(());
             }
             params.bounce += BOUNCES as u32;
             let mut head = Columns::head(0);
-            device.read((&columns.head_to_read, bytes), submitted, |view| {
+            device.read(&columns.head_to_read, bytes, submitted, |view| {
                 head = bytemuck::pod_read_unaligned(view);
             })?;
             if head == Columns::head(0) {
@@ -506,10 +506,10 @@ impl JobPaths {
             columns.clear(&mut work, &columns.queues[1 - queue]);
             self.stage(&mut work, Stage::Whitted(WhittedStep::Bounce), columns, queue)?;
             let bytes = columns.head_to_read.size();
-            work.copy((&columns.queues[1 - queue], 0), &columns.head_to_read, bytes);
+            work.copy(&columns.queues[1 - queue], 0, &columns.head_to_read, bytes);
             let submitted = work.submit();
             let mut head = Columns::head(0);
-            device.read((&columns.head_to_read, bytes), submitted, |view| {
+            device.read(&columns.head_to_read, bytes, submitted, |view| {
                 head = bytemuck::pod_read_unaligned(view);
             })?;
             if head == Columns::head(0) {

@@ -122,7 +122,7 @@ fn are_like_the_processor(device: &Device, fused: bool) -> Result<bool, DeviceEr
     work.run(Kernel::Doubles { fused }, &[&numbers, &input, &output], size)?;
     work.submit();
     let mut results = vec![[0.0; DOUBLES]; operands.len()];
-    device.read_rows((&output, &copy), bytemuck::cast_slice_mut(&mut results))?;
+    device.read_rows(&output, &copy, bytemuck::cast_slice_mut(&mut results))?;
     let own = |&[x, y, z]: &[f64; 3]| {
         let [a, b, c] = [x, y, z].map(|x| x as f32);
         let centered = 2.0 * (a - 1.0) - 1.0_f32.next_down();
@@ -190,17 +190,17 @@ fn operands() -> Vec<[f32; 4]> {
 
 /// Computes all operations on the device.
 fn compute(device: &Device, operands: &[[f32; 4]]) -> Result<Vec<[f32; 8]>, DeviceError> {
-    let kernel = device.kernel(("probe", include_str!("probe.wgsl")), &[])?;
+    let kernel = device.kernel("probe", include_str!("probe.wgsl"), &[])?;
     let bytes = (size_of::<[f32; 8]>() * operands.len()) as u64;
     let input = device.filled("operands", bytemuck::cast_slice(operands))?;
     let output = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
     let output = device.buffer("results", bytes, output)?;
     let copy = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
     let copy = device.buffer("results to read", bytes, copy)?;
-    let group = device.bind(&kernel, &[&input, &output]);
-    let submitted = device.dispatch((&kernel, &group), operands.len(), (&output, &copy, bytes));
+    let kernel = device.bind(&kernel, &[&input, &output]);
+    let submitted = device.dispatch(&kernel, operands.len(), &output, &copy, bytes);
     let mut results = vec![[0.0; 8]; operands.len()];
-    device.read((&copy, bytes), submitted, |view| {
+    device.read(&copy, bytes, submitted, |view| {
         bytemuck::cast_slice_mut(&mut results).copy_from_slice(view);
     })?;
     Ok(results)

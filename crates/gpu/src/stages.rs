@@ -206,7 +206,7 @@ impl Kernel {
         }
         let constants: Vec<_> =
             constants.into_iter().map(|(name, value)| (name, f64::from(value))).collect();
-        device.kernel((name, &files.concat()), &constants)
+        device.kernel(name, &files.concat(), &constants)
     }
 
     /// Returns its name, and its files.

@@ -320,7 +320,7 @@ impl DeviceTree {
             rows.clear();
             rows.extend(batch.clone().flat_map(|row| ray_row(rays, hits, row, kernel.is_any())));
             watch.end(QueryStage::Pack, &self.device)?;
-            self.ask(kernel, &lane, (&rows, &mut found[batch]), watch)?;
+            self.ask(kernel, &lane, &rows, &mut found[batch], watch)?;
         }
         // Not after a fault: what is left of such buffers is unknown.
         self.lanes.lock().unwrap_or_else(PoisonError::into_inner).push(lane);
@@ -359,7 +359,8 @@ impl DeviceTree {
         &self,
         kernel: Kernel,
         lane: &Lane,
-        (rows, found): (&[u32], &mut [u32]),
+        rows: &[u32],
+        found: &mut [u32],
         watch: &mut Stopwatch,
     ) -> Result<(), DeviceError> {
         let params = self.params(found.len());
@@ -372,18 +373,17 @@ impl DeviceTree {
         let mut buffers = vec![&lane.params];
         buffers.extend(&self.columns);
         buffers.extend([&lane.rays, &lane.found]);
-        let group = self.device.bind(kernel, &buffers);
-        let copy = (&lane.found, &lane.copy, bytes);
-        let mut submitted = self.device.dispatch((kernel, &group), found.len(), copy);
+        let bound = self.device.bind(kernel, &buffers);
+        let run = |bound| self.device.dispatch(bound, found.len(), &lane.found, &lane.copy, bytes);
+        let mut submitted = run(&bound);
         if let Some(again) = again {
             let again = self.device.compiled(again)?;
-            let group = self.device.bind(again, &buffers);
-            submitted = self.device.dispatch((again, &group), found.len(), copy);
+            submitted = run(&self.device.bind(again, &buffers));
         }
         watch.end(QueryStage::Kernel, &self.device)?;
         // Of the first search: after it, few rays are left.
-        watch.clock(|| self.device.clock((kernel, &group), found.len()))?;
-        self.device.read((&lane.copy, bytes), submitted, |view| {
+        watch.clock(|| self.device.clock(&bound, found.len()))?;
+        self.device.read(&lane.copy, bytes, submitted, |view| {
             bytemuck::cast_slice_mut(found).copy_from_slice(view);
         })?;
         watch.end(QueryStage::Read, &self.device)
