@@ -152,8 +152,12 @@ impl ParticleTable<'_> {
         }
         frame.columns = frame.numbers.iter().map(|column| column.name.clone()).collect();
         frame.columns.extend(frame.texts.iter().map(|column| column.name.clone()));
-        frame.cell = self.cell.map(|cell| cell_of(py, cell)).transpose()?;
-        frame.bonds = self.bonds.map(|bonds| bonds_of(py, bonds, count)).transpose()?;
+        let cell =
+            self.cell.map(|(origin, vectors, periodic)| cell_of(py, origin, vectors, periodic));
+        frame.cell = cell.transpose()?;
+        let bonds = self.bonds.as_ref();
+        let bonds = bonds.map(|(pairs, shifts)| bonds_of(py, pairs, shifts.as_ref(), count));
+        frame.bonds = bonds.transpose()?;
         frame.unit = unit_of(&self.unit);
         frame.format = format.unwrap_or_default();
         let radii = self.radii.as_deref().map_or(Ok(Radii::Auto), Radii::from_str);
@@ -282,7 +286,12 @@ fn is_share(color: Rgb) -> bool {
 }
 
 /// The cell, if its edges span a volume.
-pub(crate) fn cell_of(py: Python<'_>, (origin, vectors, periodic): CellTuple) -> PyResult<Cell> {
+pub(crate) fn cell_of(
+    py: Python<'_>,
+    origin: [f64; 3],
+    vectors: [[f64; 3]; 3],
+    periodic: [bool; 3],
+) -> PyResult<Cell> {
     let [a, b, c] = vectors.map(DVec3::from);
     let cell = Cell { origin: origin.into(), vectors: [a, b, c], periodic };
     let finite = [a, b, c, cell.origin].iter().all(|vector| vector.is_finite());
@@ -321,8 +330,13 @@ fn quaternions_of(py: Python<'_>, columns: &[Vec<f64>], count: usize) -> PyResul
 }
 
 /// Sorted bonds of `count` particles.
-fn bonds_of(py: Python<'_>, (pairs, shifts): BondTuple<'_>, count: usize) -> PyResult<Bonds> {
-    let (pairs, shifts) = (pairs.as_array(), shifts.as_ref().map(|shifts| shifts.as_array()));
+fn bonds_of(
+    py: Python<'_>,
+    pairs: &PyReadonlyArray2<'_, u32>,
+    shifts: Option<&PyReadonlyArray2<'_, i8>>,
+    count: usize,
+) -> PyResult<Bonds> {
+    let (pairs, shifts) = (pairs.as_array(), shifts.map(|shifts| shifts.as_array()));
     if pairs.ncols() != 2 || shifts.is_some_and(|shifts| shifts.dim() != (pairs.nrows(), 3)) {
         return Err(error(
             py,

@@ -39,8 +39,12 @@ pub(crate) struct Scene {
     rows: Option<Arc<[u32]>>,
 }
 
-/// A scene and its rows, for work on other threads.
-pub(crate) type SharedScene = (Arc<Mutex<spherule::Scene>>, Option<Arc<[u32]>>);
+/// A scene for work on other threads.
+pub(crate) struct SharedScene {
+    pub(crate) scene: Arc<Mutex<spherule::Scene>>,
+    /// Row in the user's arrays of each sphere, unless they are the same.
+    pub(crate) rows: Option<Arc<[u32]>>,
+}
 
 /// The text of a scene without its spheres, their places and radii, their materials, colors, and rows in the user's
 /// arrays.
@@ -152,7 +156,8 @@ impl Scene {
                 Watcher::default().run(py, pool(py, None)?, |_| work.scene())?.0
             }
         };
-        Ok(Self::of(made.map_err(|fault| fault.raise(py))?))
+        let (scene, rows) = made.map_err(|fault| fault.raise(py))?;
+        Ok(Self::of(scene, rows))
     }
 
     /// Reads a scene file.
@@ -160,7 +165,8 @@ impl Scene {
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let read = move || Work::placed(spherule::Scene::load(&path)?, &Staging::default());
         let read = Watcher::default().run(py, pool(py, None)?, move |_| read())?.0;
-        Ok(Self::of(read.map_err(|fault: Fault| fault.raise(py))?))
+        let (scene, rows) = read.map_err(|fault: Fault| fault.raise(py))?;
+        Ok(Self::of(scene, rows))
     }
 
     /// Writes a scene file, and the files beside it.
@@ -209,7 +215,7 @@ impl Scene {
         let color = color.as_array().to_vec();
         let color = color.as_chunks().0.iter().map(|&color| Rgb::from_array(color)).collect();
         scene.spheres = Spheres { x, y, z, radius, material, color };
-        Ok(Self::of((scene, rows.map(|rows| rows.as_array().to_vec()))))
+        Ok(Self::of(scene, rows.map(|rows| rows.as_array().to_vec())))
     }
 
     /// The number of spheres and ellipsoids.
@@ -254,12 +260,12 @@ impl Scene {
 }
 
 impl Scene {
-    fn of((scene, rows): (spherule::Scene, Option<Vec<u32>>)) -> Self {
+    fn of(scene: spherule::Scene, rows: Option<Vec<u32>>) -> Self {
         Self { scene: Arc::new(Mutex::new(scene)), rows: rows.map(Arc::from) }
     }
 
     pub(crate) fn share(&self) -> SharedScene {
-        (Arc::clone(&self.scene), self.rows.clone())
+        SharedScene { scene: Arc::clone(&self.scene), rows: self.rows.clone() }
     }
 
     fn lock(&self) -> MutexGuard<'_, spherule::Scene> {

@@ -129,21 +129,22 @@ impl Session {
     /// called from the pool: see [`Watcher::run_outside`].
     pub(crate) fn begin(
         pool: &ThreadPool,
-        (scene, rows): &SharedScene,
+        shared: &SharedScene,
         request: Request,
         taken: bool,
         part: Option<Part>,
     ) -> Result<Self, Fault> {
-        let mut scene = scene.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut scene = shared.scene.lock().unwrap_or_else(PoisonError::into_inner);
         let kept = (scene.settings.clone(), scene.camera.clone());
-        let locked = &mut *scene;
-        let begun = pool.install(|| Self::begin_with((locked, rows.clone()), request, taken, part));
+        let (locked, rows) = (&mut *scene, shared.rows.clone());
+        let begun = pool.install(|| Self::begin_with(locked, rows, request, taken, part));
         (scene.settings, scene.camera) = kept;
         begun
     }
 
     fn begin_with(
-        (scene, rows): (&mut spherule::Scene, Option<Arc<[u32]>>),
+        scene: &mut spherule::Scene,
+        rows: Option<Arc<[u32]>>,
         request: Request,
         taken: bool,
         part: Option<Part>,

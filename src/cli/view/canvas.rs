@@ -72,9 +72,14 @@ impl Canvas {
     /// Copies the tone-mapped image, or tone-maps the image again if the window's settings changed.
     fn show(&mut self, picture: &Picture, settings: &Settings) {
         let display = DisplaySettings::of(settings);
-        match picture.tone_mapped.as_ref().filter(|tone_mapped| tone_mapped.display == display) {
-            Some(tone_mapped) => self.pixels.copy_from_slice(&tone_mapped.pixels),
-            None => self.tone_mapper.map(picture.visible(), display, &mut self.pixels),
+        match &picture.tone_mapped {
+            Some(tone_mapped) if tone_mapped.display == display => {
+                self.pixels.copy_from_slice(&tone_mapped.pixels);
+            }
+            _ => {
+                let (image, matte) = picture.visible();
+                self.tone_mapper.map(image, matte, display, &mut self.pixels);
+            }
         }
     }
 

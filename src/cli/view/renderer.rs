@@ -140,7 +140,8 @@ impl Renderer {
         };
         let (width, height) = request.display.size;
         let mut pixels = vec![0; width as usize * height as usize];
-        self.tone_mapper.map(picture.visible(), request.display, &mut pixels);
+        let (image, matte) = picture.visible();
+        self.tone_mapper.map(image, matte, request.display, &mut pixels);
         picture.tone_mapped = Some(Arc::new(ToneMapped { display: request.display, pixels }));
         picture.elapsed = start.elapsed();
         Ok(Some(picture))

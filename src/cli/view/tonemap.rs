@@ -42,7 +42,8 @@ impl ToneMapper {
     /// Tone-maps an image as for a PNG file, and stretches it to the window.
     pub(super) fn map(
         &mut self,
-        (image, matte): (&Image, Option<&Matte>),
+        image: &Image,
+        matte: Option<&Matte>,
         display: DisplaySettings,
         pixels: &mut [u32],
     ) {

@@ -193,9 +193,9 @@ impl File {
             while let Some((kind, flags, data)) = next_message(&mut fields, &block) {
                 if kind == CONTINUATION {
                     let mut fields = self.fields(data);
-                    let next = fields.address().flatten().zip(fields.length());
-                    let next = next.ok_or_else(|| self.damaged("an object header"))?;
-                    let next = continuation(next, &block);
+                    let place = fields.address().flatten().zip(fields.length());
+                    let (at, length) = place.ok_or_else(|| self.damaged("an object header"))?;
+                    let next = continuation(at, length, &block);
                     blocks.push_back(next.ok_or_else(|| self.damaged("an object header"))?);
                     continue;
                 }
@@ -562,8 +562,8 @@ fn next_message<'b>(fields: &mut Fields<'b>, block: &Block) -> Option<(u16, u8, 
     Some((kind, flags, fields.take(size)?))
 }
 
-/// Returns a block that continues a header.
-fn continuation((at, length): (u64, u64), block: &Block) -> Option<Block> {
+/// Returns the block at an address that continues the header of another.
+fn continuation(at: u64, length: u64, block: &Block) -> Option<Block> {
     let Block { is_new, is_ordered, .. } = *block;
     // A signature before the messages, and a checksum after them.
     let (before, after) = if is_new { (4, 4) } else { (0, 0) };

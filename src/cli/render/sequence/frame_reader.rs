@@ -30,8 +30,21 @@ struct Reader {
     ahead: Option<(u64, Outcome)>,
 }
 
-/// A frame, `None` after the last one, or an error and the number of its frame.
-type Outcome = Result<Option<ParticleFrame>, (FileError, u64)>;
+/// A frame, `None` after the last one, or why it cannot be read.
+type Outcome = Result<Option<ParticleFrame>, FrameError>;
+
+/// An error of a frame.
+struct FrameError {
+    error: FileError,
+    /// Number of the frame.
+    number: u64,
+}
+
+impl From<FrameError> for Failure {
+    fn from(FrameError { error, number }: FrameError) -> Self {
+        Self::from(error).of_frame(number)
+    }
+}
 
 impl FrameReader {
     pub(super) fn open(path: &Path, options: &ReadOptions) -> Result<Self, Failure> {
@@ -58,12 +71,12 @@ impl FrameReader {
             return Ok(Some(frame));
         }
         self.held = None;
-        self.reader().take(number).map_err(failure)
+        Ok(self.reader().take(number)?)
     }
 
     /// Skips all frames up to this one; returns whether it exists.
     pub(super) fn pass(&mut self, number: u64) -> Result<bool, Failure> {
-        self.reader().pass(number).map_err(failure)
+        Ok(self.reader().pass(number)?)
     }
 
     /// Returns a frame as [`Self::take`], and keeps it for another request.
@@ -97,10 +110,6 @@ fn lock(reader: &Mutex<Reader>) -> MutexGuard<'_, Reader> {
     reader.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn failure((error, number): (FileError, u64)) -> Failure {
-    Failure::from(error).of_frame(number)
-}
-
 impl Reader {
     fn take(&mut self, number: u64) -> Outcome {
         if let Some((_, outcome)) = self.ahead.take_if(|(ahead, _)| *ahead == number) {
@@ -109,7 +118,8 @@ impl Reader {
         if number > 0 && !self.pass(number - 1)? {
             return Ok(None);
         }
-        let frame = self.frames.next().transpose().map_err(|error| (error, number))?;
+        let frame = self.frames.next().transpose();
+        let frame = frame.map_err(|error| FrameError { error, number })?;
         self.passed += u64::from(frame.is_some());
         Ok(frame)
     }
@@ -120,14 +130,16 @@ impl Reader {
         }
     }
 
-    fn pass(&mut self, number: u64) -> Result<bool, (FileError, u64)> {
+    fn pass(&mut self, number: u64) -> Result<bool, FrameError> {
         // An error of a later frame is that of the request for it.
-        let is_before = |outcome: &Outcome| matches!(outcome, Err((_, at)) if *at <= number);
+        let is_before =
+            |outcome: &Outcome| outcome.as_ref().is_err_and(|error| error.number <= number);
         if let Some((_, Err(error))) = self.ahead.take_if(|(_, outcome)| is_before(outcome)) {
             return Err(error);
         }
         while self.passed <= number {
-            if !self.frames.skip_frame().map_err(|error| (error, self.passed))? {
+            let skipped = self.frames.skip_frame();
+            if !skipped.map_err(|error| FrameError { error, number: self.passed })? {
                 return Ok(false);
             }
             self.passed += 1;

@@ -148,13 +148,13 @@ impl Terminal {
         let (width, height) = (columns.min(image.width), rows.min(image.height));
         let code = |pixel: [f32; 3]| pixel.map(|value| self.table.code(value));
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-        let pixels = pixels.map(|place| code(mean(image, place, (width, height)))).collect();
+        let pixels = pixels.map(|(x, y)| code(mean(image, x, y, width, height))).collect();
         Codes { width, height, pixels }
     }
 }
 
-/// Mean radiance of the image over a pixel of a smaller one.
-fn mean(image: &Image, (x, y): (u32, u32), (width, height): (u32, u32)) -> [f32; 3] {
+/// Mean radiance of the image over pixel (x, y) of a smaller one with `width` x `height` pixels.
+fn mean(image: &Image, x: u32, y: u32, width: u32, height: u32) -> [f32; 3] {
     let range = |at: u32, small: u32, large: u32| {
         let edge = |at: u32| (u64::from(at) * u64::from(large) / u64::from(small)) as u32;
         edge(at)..edge(at + 1).max(edge(at) + 1)
@@ -216,9 +216,9 @@ mod tests {
     fn smaller_pictures_are_means() {
         let mut image = Image::filled(4, 2, [0.0; 3]).expect("a picture");
         (image.pixels[0], image.pixels[5]) = ([1.0; 3], [1.0, 0.0, 0.0]);
-        assert_eq!(mean(&image, (0, 0), (2, 1)), [0.5, 0.25, 0.25]);
-        assert_eq!(mean(&image, (1, 0), (2, 1)), [0.0; 3]);
-        assert_eq!(mean(&image, (1, 1), (4, 2)), [1.0, 0.0, 0.0]);
+        assert_eq!(mean(&image, 0, 0, 2, 1), [0.5, 0.25, 0.25]);
+        assert_eq!(mean(&image, 1, 0, 2, 1), [0.0; 3]);
+        assert_eq!(mean(&image, 1, 1, 4, 2), [1.0, 0.0, 0.0]);
     }
 
     #[test]
