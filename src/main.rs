@@ -9,5 +9,5 @@ mod cli;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    cli::finish(cli::run().unwrap_or_else(cli::Failure::report))
+    cli::finish(cli::run())
 }

@@ -12,13 +12,14 @@ use super::annotations::AnnotationArgs;
 use super::appearance::AppearanceArgs;
 use super::checkpoint::CheckpointArgs;
 use super::command_line::command_line;
+use super::failure::Failure;
 use super::memory::MemoryArgs;
 use super::part::PartArgs;
 use super::particles::ParticleArgs;
 use super::sequences::SequenceArgs;
 use super::slices::SliceArgs;
 use super::views::{StyleArgs, ViewArgs};
-use super::{Failure, bench, compare, examples, merge, part, status, stress, version, view};
+use super::{bench, compare, examples, merge, part, status, stress, version, view};
 use clap::{Parser, Subcommand};
 use spherule_render::image::Format;
 use std::path::PathBuf;
@@ -196,7 +197,7 @@ impl Args {
         if version::is_asked_in_detail(&std::env::args_os().collect::<Vec<_>>()) {
             return Ok(Command::Version);
         }
-        let args = Self::try_parse_from(command_line()?).map_err(Failure::Usage)?;
+        let args = Self::try_parse_from(command_line()?).map_err(Failure::Arguments)?;
         Ok(args.command.unwrap_or_else(default))
     }
 }

@@ -1,6 +1,6 @@
 //! Options for checkpoints: files that hold the state of a render.
 
-use super::Failure;
+use super::failure::Failure;
 use super::values::{self, OrNone};
 use spherule_render::atomic::FileIdentity;
 use std::path::{Path, PathBuf};

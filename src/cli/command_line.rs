@@ -1,7 +1,7 @@
 //! The arguments of the process, with the default command `render` inserted.
 
-use super::Failure;
 use super::args::{Args, Command};
+use super::failure::Failure;
 use clap::{CommandFactory, Subcommand};
 use std::env;
 use std::ffi::{OsStr, OsString};

@@ -1,7 +1,7 @@
 //! `spherule compare`: measures the difference between an image and a reference.
 
-use super::Failure;
 use super::args::read_help;
+use super::failure::Failure;
 use super::files::Files;
 use super::output;
 use indicatif::HumanCount;

@@ -1,10 +1,7 @@
 //! Errors of commands, and their printing: with an excerpt for scene files, in one line for all else.
 
-use super::args::Args;
 use super::output;
-use super::render::Estimate;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
-use clap::CommandFactory;
 use clap::error::ErrorKind;
 use memchr::{memchr, memrchr};
 use spherule_measure::bench::BenchError;
@@ -12,7 +9,6 @@ use spherule_render::checkpoint::{CheckpointError, LockError};
 use spherule_render::drawing::DrawingError;
 use spherule_render::graphics::PageError;
 use spherule_render::image::{CompareError, ImageError};
-use spherule_render::memory::Shortage;
 use spherule_render::prepared::{PrepareError, PreparedError};
 use spherule_render::render::RenderError;
 use spherule_render::scene::generate::GenerateError;
@@ -30,9 +26,12 @@ const DRAWN: usize = 600;
 
 /// Error of a command.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum Failure {
+pub(super) enum Failure {
     #[error("{0}")]
-    Usage(clap::Error),
+    Arguments(#[from] clap::Error),
+    /// Options of a command that contradict each other or what they are for.
+    #[error("{message}")]
+    Usage { command: String, message: String },
     #[error("{}", .0.message)]
     Scene(Box<FileError>),
     #[error("{0}: {1}")]
@@ -83,8 +82,8 @@ pub(crate) enum Failure {
     Page(#[from] PageError),
     #[error("{0}")]
     Bench(BenchError),
-    #[error("{}", .0.message(.1))]
-    Memory(Estimate, Shortage),
+    #[error("{0}")]
+    Memory(String),
     #[error("{0}")]
     Window(String),
     #[error(
@@ -113,10 +112,7 @@ impl From<BenchError> for Failure {
 impl Failure {
     /// Creates an error for options that contradict each other.
     pub(super) fn usage(command: &str, message: impl Display) -> Self {
-        let mut program = Args::command();
-        program.build();
-        let command = program.find_subcommand_mut(command).cloned().unwrap_or(program);
-        Self::Usage(command.clone().error(ErrorKind::ValueValidation, message))
+        Self::Usage { command: command.to_owned(), message: message.to_string() }
     }
 
     /// Adds the number of a trajectory frame to the error.
@@ -130,21 +126,32 @@ impl Failure {
         }
     }
 
-    /// Prints the error, and returns the exit code: 2 for an invalid command line, 1 for all else, 0 if the
-    /// user asked for help or the version.
-    pub(crate) fn report(self) -> ExitCode {
+    /// Prints the error, for a usage error with that of `program`, and returns the exit code: 2 for an invalid command
+    /// line, 1 for all else, 0 if the user asked for help or the version.
+    pub(super) fn report(self, mut program: clap::Command) -> ExitCode {
         match self {
-            Self::Usage(asked) if !asked.use_stderr() => {
+            Self::Arguments(asked) if !asked.use_stderr() => {
                 output::write(format_args!("{}", asked.render().ansi()));
                 return ExitCode::SUCCESS;
             }
-            Self::Usage(error) => {
+            Self::Arguments(error) => {
                 // There is nowhere to report that standard error is closed.
                 let _ = error.print();
                 return ExitCode::from(2);
             }
-            Self::Frame(_, error) if matches!(*error, Self::Usage(_) | Self::NoReader(..)) => {
-                return error.report();
+            Self::Usage { command, message } => {
+                program.build();
+                let command = program.find_subcommand_mut(&command).cloned().unwrap_or(program);
+                let error = command.clone().error(ErrorKind::ValueValidation, message);
+                return Self::Arguments(error).report(command);
+            }
+            Self::Frame(_, error)
+                if matches!(
+                    *error,
+                    Self::Arguments(_) | Self::Usage { .. } | Self::NoReader(..)
+                ) =>
+            {
+                return error.report(program);
             }
             Self::NoReader(_, code) => {
                 output::error(self);

@@ -2,10 +2,11 @@
 
 use super::args::{FieldArgs, Kind, ParameterArgs};
 use super::contents::spheres;
+use super::failure::Failure;
 use super::field_scene;
 use super::files::Files;
+use super::output;
 use super::values::Radii;
-use super::{Failure, output};
 use clap::ValueEnum;
 use spherule_render::scene::generate::{
     DEFAULT_MIX, Field, Generator, Grid, Lattice, Sphereflake, Volume, Weekend,

@@ -4,7 +4,7 @@
 //! their names ([`FileIdentity`]). Files that are in the way only because of an earlier run are replaced, as
 //! usual.
 
-use super::Failure;
+use super::failure::Failure;
 use super::particles::ParticleArgs;
 use spherule_render::atomic::FileIdentity;
 use spherule_render::scene;

@@ -2,11 +2,12 @@
 
 use super::args::InfoArgs;
 use super::contents::{bodies, dropped, found, plural};
+use super::failure::Failure;
 use super::files::Files;
 use super::particles::ParticleInfo;
 use super::rows::RowInfo;
 use super::source::Source;
-use super::{Failure, devices, output, settings, slices};
+use super::{devices, output, settings, slices};
 use indicatif::{BinaryBytes, HumanCount};
 use serde::Serialize;
 use spherule_render::World;

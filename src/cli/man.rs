@@ -1,7 +1,7 @@
 //! `spherule man`: manual pages, for packages.
 
-use super::Failure;
 use super::args::{Args, ManArgs};
+use super::failure::Failure;
 use clap::CommandFactory;
 use std::process::ExitCode;
 

@@ -2,13 +2,14 @@
 
 use super::args::{EncodingArgs, picture_help};
 use super::contents::plural;
+use super::failure::Failure;
 use super::files::Files;
 use super::memory::MemoryArgs;
+use super::output;
 use super::picture_file;
 use super::render::{Subject, warnings};
 use super::settings::{self, List};
 use super::write_file::write_file;
-use super::{Failure, output};
 use indicatif::HumanCount;
 use serde::Serialize;
 use spherule_render::checkpoint::{self, Caption};

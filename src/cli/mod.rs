@@ -46,12 +46,17 @@ mod with_text;
 mod write_file;
 
 use self::args::{Args, Command};
-pub(crate) use self::failure::Failure;
+use self::failure::Failure;
 pub(crate) use self::output::finish;
+use clap::CommandFactory;
 use std::process::ExitCode;
 
-/// Runs the command of this process.
-pub(crate) fn run() -> Result<ExitCode, Failure> {
+/// Runs the command of this process, and prints its error if it fails. Returns the exit code.
+pub(crate) fn run() -> ExitCode {
+    execute().unwrap_or_else(|failure| failure.report(Args::command()))
+}
+
+fn execute() -> Result<ExitCode, Failure> {
     processor::check()?;
     signals::survive_large_files();
     match Args::of_process()? {

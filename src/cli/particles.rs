@@ -1,10 +1,11 @@
 //! Options for reading particle files, and a summary of their contents.
 
+use super::failure::Failure;
 use super::frames::{FrameArg, FrameRange};
+use super::output;
 use super::rows::RowInfo;
 use super::settings::List;
 use super::with_text::{self, WithText};
-use super::{Failure, output};
 use indicatif::HumanCount;
 use serde::Serialize;
 use serde_json::json;

@@ -1,7 +1,8 @@
 //! The image file: its format, and checks of its destination.
 
+use super::failure::Failure;
 use super::files::STREAM;
-use super::{Failure, output};
+use super::output;
 use spherule_render::atomic::check_destination;
 use spherule_render::film::Region;
 use spherule_render::image::Format;

@@ -3,7 +3,7 @@
 //! The standard library's `is_x86_feature_detected!` does not help: it returns true for features that the
 //! program was compiled with. So the check queries the processor itself.
 
-use super::Failure;
+use super::failure::Failure;
 use spherule_levels::Level;
 use std::env;
 

@@ -1,6 +1,6 @@
 //! Sources of scenes.
 
-use super::Failure;
+use super::failure::Failure;
 use super::particles::ParticleArgs;
 use spherule_render::prepared::is_prepared;
 use spherule_render::scene::particles::ReadOptions;

@@ -1,6 +1,6 @@
 //! Thread pools.
 
-use super::Failure;
+use super::failure::Failure;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::thread::available_parallelism;
 

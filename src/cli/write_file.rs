@@ -1,7 +1,8 @@
 //! Atomic writing of output files, and writing to pipes.
 
+use super::failure::Failure;
 use super::files::STREAM;
-use super::{Failure, output, signals};
+use super::{output, signals};
 use spherule_render::atomic::write_atomically;
 use std::fs;
 use std::io::{self, Write};

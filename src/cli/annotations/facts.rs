@@ -1,7 +1,7 @@
 //! Facts about a frame of particles that annotations show.
 
 use super::Value;
-use crate::cli::Failure;
+use crate::cli::failure::Failure;
 use crate::cli::render::Job;
 use crate::cli::source::Source;
 use spherule_render::scene::Scene;

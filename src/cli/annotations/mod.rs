@@ -5,8 +5,8 @@ mod template;
 
 pub(super) use self::facts::FrameFacts;
 use self::template::{Template, Value};
-use super::Failure;
 use super::appearance::BarPlace;
+use super::failure::Failure;
 use super::render::Job;
 use super::settings::List;
 use super::with_text::{self, WithText};

@@ -1,6 +1,6 @@
 //! The output folder of reports.
 
-use crate::cli::Failure;
+use crate::cli::failure::Failure;
 use spherule_measure::report::draw::{png, svg};
 use spherule_measure::report::{Machine, Report, html};
 use spherule_render::atomic::{check_destination, write_atomically};

@@ -8,7 +8,8 @@ mod gpu;
 pub(super) use self::args::{Args, EXAMPLES};
 use self::args::{Common, Measurement};
 use self::files::Folder;
-use super::{Failure, output, threads as cores};
+use super::failure::Failure;
+use super::{output, threads as cores};
 use spherule_measure::bench::{
     BenchError, Options, Progress, build, convergence, paper, roulette, skips, threads, traversal,
 };

@@ -2,7 +2,7 @@
 
 mod environment;
 
-use super::Failure;
+use super::failure::Failure;
 use super::names::{self, SPLITS};
 use spherule_render::split::{Part, Split};
 use std::num::NonZeroU32;

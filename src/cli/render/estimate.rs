@@ -27,7 +27,7 @@ const MATTE: u64 = 64;
 
 /// Estimated peak memory of a render, without the scene's columns, which are loaded already.
 #[derive(Clone, Debug)]
-pub(crate) struct Estimate {
+pub(super) struct Estimate {
     region: Region,
     spheres: u64,
     /// True if layers are part of the image.
@@ -94,12 +94,12 @@ impl Estimate {
     /// bytes.
     pub(super) fn check(self) -> Result<u64, Failure> {
         let need = self.need();
-        memory::check(need).map_err(|shortage| Failure::Memory(self, shortage))?;
+        memory::check(need).map_err(|shortage| Failure::Memory(self.message(&shortage)))?;
         Ok(memory::resident().saturating_add(need).max(memory::peak().unwrap_or(0)))
     }
 
     /// Formats the error message.
-    pub(crate) fn message(&self, shortage: &Shortage) -> String {
+    fn message(&self, shortage: &Shortage) -> String {
         let hint = if self.build > self.picture() {
             "render fewer spheres, or use a machine with more memory"
         } else if self.denoised {

@@ -2,7 +2,7 @@
 
 use super::job::Job;
 use super::prepare::Prepared;
-use crate::cli::Failure;
+use crate::cli::failure::Failure;
 use spherule_render::graphics::Page;
 use spherule_render::image::WriteOptions;
 use spherule_render::image::tone::DisplayTransform;

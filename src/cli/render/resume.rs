@@ -3,8 +3,8 @@
 use super::job::Job;
 use super::layers;
 use super::prepare::Prepared;
-use crate::cli::Failure;
 use crate::cli::args::RenderArgs;
+use crate::cli::failure::Failure;
 use crate::cli::invocation::{CommandOptions, Invocation, render_command};
 use crate::cli::settings::region_text;
 use clap::{ArgMatches, FromArgMatches};
@@ -35,7 +35,7 @@ impl Resumed {
         // If the folder does not exist any more, the files may have moved to the current one.
         let found = if folder.is_dir() { then.clone().relative_to(&folder) } else { then.clone() };
         let matches = parse(found.with(now.typed.clone()).arguments(&command))?;
-        let args = RenderArgs::from_arg_matches(&matches).map_err(Failure::Usage)?;
+        let args = RenderArgs::from_arg_matches(&matches).map_err(Failure::Arguments)?;
         let given = Invocation { folder, typed: then.with(now.typed.relative_to(&now.folder)) };
         Ok((Self { path: path.to_owned(), origin, render }, args, given))
     }
@@ -98,5 +98,5 @@ impl Resumed {
 
 fn parse(arguments: Vec<OsString>) -> Result<ArgMatches, Failure> {
     let line = std::iter::once(OsString::from("render")).chain(arguments);
-    render_command().try_get_matches_from(line).map_err(Failure::Usage)
+    render_command().try_get_matches_from(line).map_err(Failure::Arguments)
 }

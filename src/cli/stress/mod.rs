@@ -5,9 +5,10 @@ mod plot;
 mod table;
 
 pub(super) use self::args::{Args, EXAMPLES};
+use super::failure::Failure;
 use super::files::Files;
 use super::progress::{Meter, rate};
-use super::{Failure, output, threads};
+use super::{output, threads};
 use indicatif::HumanCount;
 use serde::Serialize;
 use spherule_measure::report::draw::draw;

@@ -1,7 +1,7 @@
 //! Cameras: what is up, views from a side, projections and turntables.
 
 use super::ViewArgs;
-use crate::cli::Failure;
+use crate::cli::failure::Failure;
 use glam::DVec3;
 use spherule_render::overlay::annotations;
 use spherule_render::scene::particles::{Orientation, Particles, UpReason};

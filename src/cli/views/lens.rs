@@ -1,6 +1,6 @@
 //! Options for the lens of the camera.
 
-use crate::cli::Failure;
+use crate::cli::failure::Failure;
 use crate::cli::settings::List;
 use crate::cli::with_text::{self, WithText};
 use glam::DVec3;

@@ -9,7 +9,7 @@ use self::camera::UpArg;
 pub(super) use self::camera::corners;
 use self::lens::LensArgs;
 pub(super) use self::style::StyleArgs;
-use super::Failure;
+use super::failure::Failure;
 use super::names::{self, Names};
 use super::settings::List;
 use clap::value_parser;

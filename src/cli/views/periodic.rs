@@ -1,7 +1,7 @@
 //! Wrapping and replication of periodic cells.
 
 use super::ViewArgs;
-use crate::cli::Failure;
+use crate::cli::failure::Failure;
 use spherule_render::scene::particles::{Cell, Particles, PeriodicError};
 use spherule_render::scene::{FileError, Scene};
 use std::path::Path;
