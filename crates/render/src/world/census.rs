@@ -219,6 +219,27 @@ mod tests {
     }
 
     #[test]
+    fn what_is_absent_is_skipped_and_nothing_else() {
+        let all = Features {
+            spheres_by_kind: [1; MaterialKind::COUNT],
+            cuts: 1,
+            ground_kind: Some(MaterialKind::Lambertian),
+            colors: true,
+            translucent: true,
+            lights: true,
+            lens: true,
+            environment: true,
+            glass_at_camera: vec![0],
+            nested_glass: true,
+            ..Features::default()
+        };
+        assert!(all.skipped().is_empty(), "{:?}", all.skipped());
+        let fewer = Features { ground_kind: None, lens: false, ..all };
+        assert_eq!(fewer.skipped(), ["no ground: no plane test", "no lens: no lens samples"]);
+        assert_eq!(Features::default().skipped().len(), 9 + MaterialKind::COUNT);
+    }
+
+    #[test]
     fn glass_is_nested_where_it_touches_glass() {
         assert!(!nested(&[(0.0, 1.0)]));
         assert!(!nested(&[(0.0, 1.0), (2.1, 1.0), (-3.0, 1.5)]));
