@@ -118,7 +118,7 @@ pub struct Fragment {
 }
 
 impl Fragment {
-    /// What is known of a ray: the ground, or the distance beyond which nothing counts.
+    /// The known end of a ray: the ground, or the distance beyond which nothing counts.
     fn known(attenuated: &AttenuatedRay) -> Self {
         let (t, hit) = attenuated.known;
         let root = Root { t, error: 0.0, exact: false };

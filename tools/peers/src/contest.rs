@@ -71,7 +71,7 @@ pub struct Contest<'a> {
     pub embree: &'a [[Scene<'a>; 2]],
     /// The ways to ask Embree, which run in a first heat.
     pub entries: &'a [Entry],
-    /// How many of them, the fastest, run in the rounds.
+    /// Number of them, the fastest, that run in the rounds.
     pub finalists: u32,
     pub rounds: u32,
 }
