@@ -148,6 +148,17 @@ pub mod world {
     }
 }
 
+/// Composition of scenes: particles or a scene, and all that is asked of it, become the scene that is drawn.
+#[cfg(feature = "drawing")]
+pub mod compose {
+    #[doc(inline)]
+    pub use spherule_render::compose::{
+        AnnotationRequest, Axes, Bar, CameraRequest, CellRequest, Content, Fault, Focus, LabelText,
+        Labels, LensRequest, ROWS, Request, Sections, Shared, Staged, Subject, Template, Value,
+        change, choose, frame, light_ahead, place, stage,
+    };
+}
+
 /// Overlays of finished images: the look, and annotations.
 pub mod overlay {
     /// Annotations: color bars, legends, axes, scale bars and labels.

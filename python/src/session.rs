@@ -3,7 +3,7 @@
 use crate::encode::Matte;
 use crate::errors::error;
 use crate::pools::pool;
-use crate::scene::{Fault, Scene, SharedScene, change, place};
+use crate::scene::{Fault, Scene, SharedScene};
 use crate::watch::{Shared, Stop, Watcher};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyRuntimeError;
@@ -11,6 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::ThreadPool;
 use spherule::World;
+use spherule::compose;
 use spherule::denoise::{Asked, Choice, Denoiser, Judged, choose};
 use spherule::layers::{Layer, Layers, layers};
 use spherule::overlay::{Canvas, annotations};
@@ -150,8 +151,8 @@ impl Session {
         part: Option<Part>,
     ) -> Result<Self, Fault> {
         let Request { settings, keys, layers } = request;
-        change(&mut scene.settings, &settings, &keys);
-        place(scene)?;
+        compose::change(&mut scene.settings, &settings, &keys);
+        compose::frame(scene, false, None)?;
         let Settings { width, height, .. } = scene.settings;
         let region = Region { x: 0, y: 0, width, height };
         let asked = Asked { part: part.is_some(), spp: keys.iter().any(|key| key == "spp") };

@@ -34,7 +34,7 @@ use std::path::PathBuf;
 )]
 pub(super) struct Args {
     #[command(subcommand)]
-    command: Option<Command>,
+    pub(super) command: Option<Command>,
 }
 
 #[derive(Debug, Subcommand)]

@@ -1,11 +1,9 @@
 //! Options for slices: planes that cut spheres away.
 
 use super::settings::List;
-use glam::DVec3;
 use serde_json::json;
-use spherule_render::scene::{FileError, Scene, Slice, SliceMode, SlicePlane};
+use spherule_render::scene::{Slice, SliceMode, SlicePlane};
 use spherule_render::suggest;
-use std::path::Path;
 
 /// Options for slices.
 #[derive(Clone, Debug, Default, clap::Args)]
@@ -30,31 +28,14 @@ fn mode(name: &str) -> Result<SliceMode, String> {
 }
 
 impl SliceArgs {
-    /// Applies the scene's own slices and those of the command line to a scene from `path`. Percentages are
-    /// of `cell` if there is one. The slices may remove all spheres only if `allow_empty` is true. Returns
-    /// the normals of the planes that cut anything.
-    pub(super) fn cut(
-        &self,
-        scene: &mut Scene,
-        path: &Path,
-        cell: Option<[DVec3; 2]>,
-        allow_empty: bool,
-    ) -> Result<Vec<DVec3>, FileError> {
-        if !self.planes.is_empty() {
-            let whole = cell.or_else(|| scene.bounds()).unwrap_or_default();
-            let mode = self.slice_mode.unwrap_or_default();
-            scene.slices.extend(self.planes.iter().map(|plane| plane.slice(whole, mode)));
-        }
-        let normals = scene.cut_normals();
-        let dropped = if scene.slices.is_empty() { 0 } else { scene.drop_cut() };
-        if dropped > 0 && scene.framed().next().is_none() && !allow_empty {
-            let message = format!("the slices cut away all of its {dropped} spheres");
-            return Err(FileError::whole_file(path, message).with_help(
-                "a slice describes the side that is cut away; for the other side write z<10 \
-                            instead of z>10",
-            ));
-        }
-        Ok(normals)
+    /// Returns the planes that cut.
+    pub(super) fn planes(&self) -> &[SlicePlane] {
+        &self.planes
+    }
+
+    /// Returns the treatment of spheres.
+    pub(super) fn mode(&self) -> SliceMode {
+        self.slice_mode.unwrap_or_default()
     }
 
     /// Settings for the image's metadata.
@@ -63,8 +44,7 @@ impl SliceArgs {
         if !self.planes.is_empty() {
             let planes: Vec<&str> = self.planes.iter().map(SlicePlane::text).collect();
             list.insert("slice".to_owned(), json!(planes.join("; ")));
-            let mode = self.slice_mode.unwrap_or_default();
-            list.insert("slice_mode".to_owned(), json!(mode.name()));
+            list.insert("slice_mode".to_owned(), json!(self.mode().name()));
         }
         list
     }

@@ -42,6 +42,8 @@ pub mod integrator;
 pub mod shade;
 
 pub mod checkpoint;
+#[cfg(feature = "drawing")]
+pub mod compose;
 pub mod denoise;
 pub mod film;
 pub mod layers;

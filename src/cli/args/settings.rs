@@ -29,6 +29,11 @@ impl<const DISPLAY: bool> SettingArgs<DISPLAY> {
         self.values.iter().find(|row| row.0 == name).map(|row| row.1)
     }
 
+    /// Returns names and values of those that are given.
+    pub(in crate::cli) fn values(&self) -> &[(&'static str, Value)] {
+        &self.values
+    }
+
     /// Overrides settings with those that are given.
     pub(in crate::cli) fn apply(&self, settings: &mut Settings) {
         settings.change(&self.values);

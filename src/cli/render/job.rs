@@ -20,11 +20,12 @@ use crate::cli::threads;
 use crate::cli::views::{StyleArgs, ViewArgs};
 use spherule_render::World;
 use spherule_render::bvh::builders::Builder;
+use spherule_render::compose::{Fault, Focus, Request};
 use spherule_render::film::Region;
 use spherule_render::graphics;
 use spherule_render::image::Format;
 use spherule_render::scene::particles::ParticleStyle;
-use spherule_render::scene::{Look, Preset, Settings};
+use spherule_render::scene::{Background, Preset, Settings};
 use spherule_render::split::{Part, Split};
 use spherule_render::trace::Tracer;
 use std::path::PathBuf;
@@ -42,7 +43,8 @@ pub(in crate::cli) struct Place {
 #[derive(Clone)]
 pub(in crate::cli) struct Job<'a> {
     pub(in crate::cli) source: Source,
-    pub(in crate::cli) looks: ParticleStyle,
+    /// What is asked of the scene.
+    pub(in crate::cli) request: Request,
     /// The options on the command line.
     pub(in crate::cli) typed: (&'a ParticleArgs, &'a AppearanceArgs),
     pub(in crate::cli) color_bar: Option<&'a BarPlace>,
@@ -117,7 +119,8 @@ impl<'a> Job<'a> {
             );
             return Err(Failure::usage("render", message));
         }
-        check_alpha(&args.style.look(None, Look::default()), format)?;
+        let background = args.style.background();
+        check_alpha(background == Some(Background::Transparent), format)?;
         let inside = matches!(&args.looks.color_bar, Some(BarPlace::Inside(_)));
         if inside && args.picture.region.is_some() {
             let message = "--color-bar inside needs the whole image; remove --region";
@@ -150,10 +153,10 @@ impl<'a> Job<'a> {
         let part = args.part.resolved();
         let (part, deal) = if args.is_sequence() { (None, part) } else { (part, None) };
         let mut looks = args.looks.looks(args.particles.options().radius_scale);
-        looks.ids = args.views.particle_in_focus().is_some();
+        looks.ids = matches!(args.views.lens().focus, Some(Focus::Particle(_)));
         Ok(Self {
             source: with_columns(source, &looks)?,
-            looks,
+            request: request(args, looks, part.is_some()),
             typed: (&args.particles, &args.looks),
             color_bar: args.looks.color_bar.as_ref(),
             output: args.output.clone(),
@@ -189,6 +192,34 @@ impl<'a> Job<'a> {
     pub(in crate::cli) fn preset(&self) -> Option<Preset> {
         let particles = matches!(self.source, Source::Particles(..));
         self.style.preset().or(particles.then(Preset::default))
+    }
+
+    /// Words a fault of the scene's composition.
+    pub(in crate::cli) fn refuse(&self, fault: Fault) -> Failure {
+        let message = match fault {
+            Fault::File(error) => return error.into(),
+            Fault::World(title, error) => return Failure::World(title, error),
+            Fault::Legend { numeric: true } => {
+                "--legend needs colors that stand for names; use --color-bar for those of numbers"
+            }
+            Fault::Legend { numeric: false } => {
+                "--legend needs a particle file whose colors stand for elements, types or the texts of \
+                 --color-by"
+            }
+            Fault::AxesOfCell => "--axes=cell needs a particle file with a cell; use --axes",
+            Fault::Label { row, why } => {
+                let message = format!("--label '{}': {why}", self.annotations.label(row));
+                return Failure::usage("render", message);
+            }
+            Fault::Margin => "--margin has no effect on the scene's own camera; add --view",
+            Fault::FocusOfPinhole => "--focus needs a lens; add --aperture with its diameter",
+            Fault::FocusWithoutParticles => "--focus id:ID needs a particle file; give a distance",
+            Fault::FocusBehindCamera(id) => {
+                let message = format!("--focus: the particle {id} is behind the camera");
+                return Failure::usage("render", message);
+            }
+        };
+        Failure::usage("render", message)
     }
 
     /// Returns whether the image is part of a sequence.
@@ -237,6 +268,33 @@ impl<'a> Job<'a> {
     }
 }
 
+/// Returns what the options ask of the scene; of a part of an image, the settings of its display, too, since the image
+/// is written elsewhere.
+fn request(args: &RenderArgs, style: ParticleStyle, part: bool) -> Request {
+    let bar = match &args.looks.color_bar {
+        Some(BarPlace::Inside(position)) => Some(*position),
+        Some(BarPlace::File(..)) | None => None,
+    };
+    let mut settings = args.picture.settings.values().to_vec();
+    if part {
+        settings.extend(args.encoding.display.values());
+    }
+    Request {
+        style,
+        cell: args.views.cell(),
+        up: args.views.up(),
+        preset: args.style.preset(),
+        background: args.style.background(),
+        planes: args.slices.planes().to_vec(),
+        slice_mode: args.slices.mode(),
+        annotations: args.annotations.request(bar),
+        settings,
+        camera: args.views.camera(),
+        lens: args.views.lens(),
+        ..Request::default()
+    }
+}
+
 /// Rejects options that do not apply to pages.
 fn check_page(args: &RenderArgs) -> Result<(), Failure> {
     let what = if !args.encoding.layers.is_empty() {
@@ -268,7 +326,7 @@ fn check_film(args: &RenderArgs) -> Result<(), Failure> {
         "--part"
     } else if args.sequence.skip_existing {
         "--skip-existing"
-    } else if args.style.look(None, Look::default()).is_transparent() {
+    } else if args.style.background() == Some(Background::Transparent) {
         "a transparent background"
     } else {
         return Ok(());
@@ -277,8 +335,8 @@ fn check_film(args: &RenderArgs) -> Result<(), Failure> {
 }
 
 /// Rejects a transparent background for formats without alpha.
-pub(in crate::cli) fn check_alpha(look: &Look, format: Format) -> Result<(), Failure> {
-    if !look.is_transparent() || format.has_alpha() {
+pub(in crate::cli) fn check_alpha(transparent: bool, format: Format) -> Result<(), Failure> {
+    if !transparent || format.has_alpha() {
         return Ok(());
     }
     let suffixes = Format::list_suffixes(Format::has_alpha);

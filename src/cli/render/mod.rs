@@ -25,14 +25,15 @@ mod terminal;
 mod video;
 mod visibility;
 
-pub(super) use self::appearance::{check_bar, check_legend, draw_annotations, focus, write_bar};
+pub(super) use self::appearance::{check_bar, check_legend, draw_annotations, write_bar};
 use self::checkpoint_writer::CheckpointWriter;
 use self::files::files;
 pub(super) use self::job::{Job, check_alpha};
 pub(super) use self::layers::alpha;
 pub(super) use self::metadata::{Subject, push_denoised, push_error};
 use self::notices::Notices;
-use self::prepare::{PlacedScene, Prepared};
+use self::prepare::Prepared;
+pub(super) use self::prepare::{PlacedScene, frame_number};
 use self::resume::Resumed;
 use self::summary::Summary;
 pub(super) use self::summary::warnings;

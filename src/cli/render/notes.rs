@@ -28,7 +28,7 @@ pub(super) fn notes(job: &Job, scene: &Scene, world: &World) -> Vec<String> {
         note(true, reason.is_some(), &name, reason.as_deref().unwrap_or_default());
     }
     let ao = matches!(settings.integrator, Integrator::Ao { .. });
-    let materials = job.looks.types.iter().any(|look| look.material.is_some());
+    let materials = job.request.style.types.iter().any(|look| look.material.is_some());
     let matte = "the integrator ao ignores materials";
     note(materials, ao, "--type with a material", matte);
     let short = settings.depth.is_some_and(|depth| depth < ROULETTE_BEGINS);

@@ -4,23 +4,22 @@ use super::estimate::Estimate;
 use super::job::{Job, check_alpha};
 use super::notes::notes;
 use super::notices::Notices;
-use super::{appearance, metadata, part, visibility};
-use crate::cli::annotations::{self, FrameFacts, annotate};
+use super::{metadata, part, visibility};
 use crate::cli::contents::{dropped, found};
 use crate::cli::devices::Attached;
 use crate::cli::failure::Failure;
 use crate::cli::output;
 use crate::cli::picture_file;
 use crate::cli::source::Source;
-use glam::DVec3;
 use spherule_render::World;
 use spherule_render::bvh::builders::Builder;
+use spherule_render::compose::{self, Content, Staged, Subject, Value};
 use spherule_render::denoise::{self, Asked, Choice};
 use spherule_render::film::Region;
 use spherule_render::prepared::{self, PreparedScene};
 use spherule_render::render::{ImagePart, Render};
 use spherule_render::scene::particles::{
-    ArrowSizes, Category, Cell, Legend, Orientation, Particles,
+    self, FrameChoice, Legend, Orientation, Particles, count_frames,
 };
 use spherule_render::scene::{Denoise, Identity, Scene, Settings};
 use std::path::Path;
@@ -64,55 +63,54 @@ pub(super) struct Prepared {
     pub(super) device: Attached,
 }
 
-/// A scene with the job's settings, before its camera is placed.
-pub(super) struct Staged {
-    pub(super) scene: Scene,
-    /// Normals of the slices that cut anything, toward what is cut away.
-    pub(super) cuts: Vec<DVec3>,
-    pub(super) legend: Option<Legend>,
-    /// The orientation of the particles, if the scene is of particles.
-    pub(super) orientation: Option<Orientation>,
-    /// The names that colors stand for, if they are asked for.
-    pub(super) categories: Option<Vec<Category>>,
-    /// Center of the particle in focus, if the focus is a particle.
-    focus: Option<DVec3>,
-    /// The sizes of arrows, if there are any.
-    pub(super) arrow_sizes: Option<ArrowSizes>,
-    load: Duration,
+/// Loads the scene with the job's settings, before its camera is placed; `given` are its particles, if they are already
+/// loaded.
+pub(super) fn stage(job: &Job, given: Option<Particles>) -> Result<Staged, Failure> {
+    let content = match (&job.source, given) {
+        (_, Some(particles)) => Content::Particles(Box::new(particles)),
+        (Source::Particles(path, options), None) => {
+            Content::Particles(Box::new(particles::read(path, options)?))
+        }
+        (source, None) => {
+            job.views.refuse_cells()?;
+            Content::Scene(Box::new(source.load()?))
+        }
+    };
+    let name = job.source.name();
+    let title = job.source.title(&Scene::default()).into_owned();
+    let frame = frame_number(job)?;
+    let subject = Subject { path: Path::new(&*name), title: &title, frame: &frame };
+    let shared = job.common.as_ref().map(|common| &common.shared);
+    let staged = compose::stage(&job.request, &subject, content, shared);
+    let staged = staged.map_err(|fault| job.refuse(fault))?;
+    check_region(job, &staged.scene)?;
+    check_alpha(staged.scene.look.is_transparent(), job.format)?;
+    Ok(staged)
 }
 
-impl Staged {
-    /// Loads the scene; `given` are its particles, if they are already loaded.
-    pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Self, Failure> {
-        let start = Instant::now();
-        let loaded = appearance::load(job, given)?;
-        let appearance::Loaded { mut scene, legend, cell, orientation, mut facts, .. } = loaded;
-        let appearance::Loaded { is_crystal, focus, arrow_sizes, .. } = loaded;
-        let box_of = cell.as_ref().map(Cell::bounds);
-        let path = job.source.name().into_owned();
-        let cuts = job.slices.cut(&mut scene, Path::new(&path), box_of, job.looks.allow_empty)?;
-        if let Some(common) = &job.common {
-            facts.categories.clone_from(&common.categories);
-        }
-        annotate(job, &mut scene, legend.as_ref(), &facts)?;
-        check_region(job, &scene)?;
-        let load = start.elapsed();
-        job.style.set(job.preset(), &mut scene);
-        job.views.show_cell(&mut scene, cell.as_ref(), is_crystal);
-        check_alpha(&scene.look, job.format)?;
-        job.picture.settings.apply(&mut scene.settings);
-        if job.part.is_some() {
-            // The image is written elsewhere, with the settings of the part.
-            job.encoding.display.apply(&mut scene.settings);
-        }
-        let FrameFacts { categories, .. } = facts;
-        Ok(Self { scene, cuts, legend, orientation, categories, focus, arrow_sizes, load })
+/// Returns the number of the frame that is drawn, from 0, if a label shows it.
+pub(in crate::cli) fn frame_number(job: &Job) -> Result<Value, Failure> {
+    if !job.request.annotations.shows("frame") {
+        return Ok(Value::Missing("no label shows it"));
     }
+    if let Some(number) = job.frame {
+        return Ok(Value::Whole(number as i64));
+    }
+    let Source::Particles(path, options) = &job.source else {
+        return Ok(Value::Missing("only particle files have it"));
+    };
+    Ok(match options.frame {
+        FrameChoice::Index(index) => Value::Whole(index as i64),
+        FrameChoice::Last if path.is_file() => {
+            Value::Whole(count_frames(path, options)?.saturating_sub(1) as i64)
+        }
+        FrameChoice::Last => Value::Missing("the input can be read only once"),
+    })
 }
 
 /// A scene whose camera and lights are placed, so that everything that determines the image is known.
-pub(super) struct PlacedScene {
-    pub(super) scene: Scene,
+pub(in crate::cli) struct PlacedScene {
+    pub(in crate::cli) scene: Scene,
     pub(super) legend: Option<Legend>,
     /// The orientation of the particles, if the scene is of particles.
     orientation: Option<Orientation>,
@@ -129,21 +127,18 @@ pub(super) struct PlacedScene {
 impl PlacedScene {
     /// Loads the scene, applies the job's settings, and places the camera; `given` are its particles, if they
     /// are already loaded.
-    pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Self, Failure> {
+    pub(in crate::cli) fn load(job: &Job, given: Option<Particles>) -> Result<Self, Failure> {
         if let Source::Prepared(path) = &job.source {
             return Self::open(job, path);
         }
-        let Staged { mut scene, cuts, legend, orientation, focus, load, .. } =
-            Staged::load(job, given)?;
-        place_camera(job, &mut scene, orientation.as_ref(), &cuts)?;
-        job.views.set_lens(&mut scene, focus)?;
-        if let Some(preset) = job.preset() {
-            let vertical = job.views.vertical(&scene.camera, orientation.as_ref());
-            preset.light(&mut scene, vertical);
-        }
-        if let (Some(ground), Some(common)) = (&mut scene.ground, &job.common) {
-            ground.height = common.ground.unwrap_or(ground.height);
-        }
+        let start = Instant::now();
+        let mut staged = stage(job, given)?;
+        let load = start.elapsed();
+        let shared = job.common.as_ref().map(|common| &common.shared);
+        let angle = job.turn.map(|turn| job.views.angle(turn));
+        compose::place(&job.request, &mut staged, shared, angle)
+            .map_err(|fault| job.refuse(fault))?;
+        let Staged { mut scene, legend, orientation, .. } = staged;
         let region = job.region(&scene.settings)?;
         if job.part.is_none() {
             picture_file::check_size("render", region, job.format)?;
@@ -162,11 +157,8 @@ impl PlacedScene {
         let mut scene = std::mem::take(&mut stored.scene);
         let load = start.elapsed();
         check_region(job, &scene)?;
-        check_alpha(&scene.look, job.format)?;
-        job.picture.settings.apply(&mut scene.settings);
-        if job.part.is_some() {
-            job.encoding.display.apply(&mut scene.settings);
-        }
+        check_alpha(scene.look.is_transparent(), job.format)?;
+        scene.settings.change(&job.request.settings);
         let region = job.region(&scene.settings)?;
         if job.part.is_none() {
             picture_file::check_size("render", region, job.format)?;
@@ -210,7 +202,7 @@ impl PlacedScene {
         warnings.extend(device.refusal());
         let empty = visibility::explain_empty(&world, region, scene.settings.spp);
         let mut notes = notes(job, &scene, &world);
-        notes.extend(annotations::notes(&scene.annotations));
+        notes.extend(compose::notes(&scene.annotations));
         Ok(Prepared {
             title: job.source.title(&scene).into_owned(),
             notes,
@@ -308,22 +300,6 @@ fn choose(
         return Err(Failure::usage("render", message));
     }
     Ok(denoise::choose(scene, region, spheres, asked))
-}
-
-/// Places the camera for this scene, or for all images of its sequence.
-fn place_camera(
-    job: &Job,
-    scene: &mut Scene,
-    orientation: Option<&Orientation>,
-    cuts: &[DVec3],
-) -> Result<(), Failure> {
-    match &job.common {
-        Some(common) => {
-            scene.camera = common.camera.clone();
-            Ok(())
-        }
-        None => job.views.frame(scene, orientation, job.turn, cuts),
-    }
 }
 
 /// Returns the number of samples of a region.

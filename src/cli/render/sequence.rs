@@ -59,15 +59,15 @@ pub(super) fn run(
     let frames = Frames::choose(path, &options, range)?;
     let plan = Plan::new(Some(frames), job.views.turntable())?;
     let mut job = job.clone();
-    job.looks.allow_empty = true;
+    job.request.style.allow_empty = true;
     let video = check_outputs(&job, &plan, files)?;
     let mut reader = FrameReader::open(path, &options)?;
     let survey = survey_frames(&job, &plan, path, &options, &mut reader)?;
-    survey.check(path, &job.looks)?;
+    survey.check(path, &job.request.style)?;
     print_framing(&job, &plan);
     survey.fix_radius(&mut options);
-    survey.fix_colors(&mut job.looks.coloring);
-    survey.fix_arrows(job.looks.arrows.as_mut());
+    survey.fix_colors(&mut job.request.style.coloring);
+    survey.fix_arrows(job.request.style.arrows.as_mut());
     let session = Session { video, ..session };
     Sequence { job, plan, files, session, resumed }.of_frames(path, &options, reader, survey)
 }
@@ -176,8 +176,7 @@ fn print_framing(job: &Job, plan: &Plan) {
             output::note(format_args!("one camera frames all of {}", plural(frames, "frame")));
         }
         _ => {
-            let ranged =
-                matches!(&job.looks.coloring, Coloring::Column(colors) if colors.ends.is_none());
+            let ranged = matches!(&job.request.style.coloring, Coloring::Column(colors) if colors.ends.is_none());
             let colors = if ranged { ", and its color range applies to all images" } else { "" };
             output::note(format_args!(
                 "the camera frames the first frame{colors}: the input can be read only once"

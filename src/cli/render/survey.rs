@@ -2,15 +2,15 @@
 //! images share.
 
 use super::job::Job;
-use super::prepare::Staged;
+use super::prepare::stage;
 use crate::cli::contents::plural;
 use crate::cli::failure::Failure;
-use crate::cli::views::corners;
+use spherule_render::compose::{self, Shared, Staged};
+use spherule_render::scene::FileError;
 use spherule_render::scene::particles::{
     ArrowSizes, ArrowStyle, Category, Coloring, Orientation, ParticleFrame, ParticleStyle,
     Particles, Radii, ReadOptions, SharedNames, of_frame,
 };
-use spherule_render::scene::{Camera, FileError};
 use spherule_render::world::WorldError;
 use spherule_render::world::framing::SequenceBounds;
 use std::path::Path;
@@ -18,15 +18,9 @@ use std::path::Path;
 /// Properties shared by all images of a sequence.
 #[derive(Clone)]
 pub(in crate::cli) struct Common {
-    pub(in crate::cli) camera: Camera,
-    /// The orientation of the first frame that shows a sphere.
-    pub(in crate::cli) orientation: Option<Orientation>,
-    /// Height of the preset's ground, below all frames.
-    pub(in crate::cli) ground: Option<f64>,
+    pub(in crate::cli) shared: Shared,
     /// True if the camera is placed for all images, and not only for the first.
     pub(in crate::cli) frames_all: bool,
-    /// The names that colors stand for in all frames, if they are asked for.
-    pub(in crate::cli) categories: Option<Vec<Category>>,
 }
 
 /// Results of the survey, with memory independent of the number of frames.
@@ -81,20 +75,19 @@ impl Survey {
     ) -> Result<(), Failure> {
         self.frames += 1;
         let radius = guessed(&particles, options);
-        if let Coloring::Column(colors) = &job.looks.coloring {
+        if let Coloring::Column(colors) = &job.request.style.coloring {
             self.numeric |= colors.is_numeric(&particles);
         }
         // The arrows of later frames have the sizes of those before.
         let mut sized = job.clone();
-        self.fix_arrows(sized.looks.arrows.as_mut());
-        let staged = Staged::load(&sized, Some(particles))?;
-        let Staged { mut scene, cuts, legend, orientation, categories, arrow_sizes, .. } = staged;
-        self.arrow_sizes = self.arrow_sizes.or(arrow_sizes);
-        if scene.is_empty() {
+        self.fix_arrows(sized.request.style.arrows.as_mut());
+        let mut staged = stage(&sized, Some(particles))?;
+        self.arrow_sizes = self.arrow_sizes.or(staged.arrow_sizes);
+        if staged.scene.is_empty() {
             return Ok(());
         }
         self.shown += 1;
-        for category in categories.into_iter().flatten() {
+        for category in staged.categories.take().into_iter().flatten() {
             let known = self.categories.get_or_insert_default();
             let same =
                 |own: &&mut Category| own.name == category.name && own.color == category.color;
@@ -105,18 +98,20 @@ impl Survey {
         }
         if self.shown == 1 {
             self.radius = radius;
-            self.warnings = std::mem::take(&mut scene.warnings);
-            job.views.choose(&mut scene, orientation.as_ref(), &cuts)?;
-            self.orientation = orientation;
-            self.bounds = SequenceBounds::new(&scene);
+            self.warnings = std::mem::take(&mut staged.scene.warnings);
+            compose::choose(&job.request, &mut staged).map_err(|fault| job.refuse(fault))?;
+            compose::leave_room(&mut staged.scene, job.request.camera.turns);
+            self.orientation = staged.orientation;
+            self.bounds = SequenceBounds::new(&staged.scene);
         }
+        let Staged { scene, legend, .. } = staged;
         if let Some(legend) = legend {
             let range = legend.scale.range;
             let [low, high] = self.ends.unwrap_or([range.low(), range.high()]);
             self.ends = Some([low.min(range.low()), high.max(range.high())]);
         }
         if let Some(bounds) = &mut self.bounds {
-            bounds.add(&scene, &corners(&scene));
+            bounds.add(&scene, &compose::corners(&scene));
         }
         Ok(())
     }
@@ -170,13 +165,15 @@ impl Survey {
         // The ground is below all frames, for every view.
         let mut still = view(None)?;
         if let Some(preset) = job.preset() {
-            let vertical = job.views.vertical(&still.camera, self.orientation.as_ref());
+            let vertical =
+                compose::vertical(&job.request, &still.camera, self.orientation.as_ref());
             preset.light(&mut still, vertical);
         }
         let ground = still.ground.map(|ground| ground.height);
         let camera = if angle.is_none() { still.camera } else { view(angle)?.camera };
         let (orientation, categories) = (self.orientation, self.categories.clone());
-        Ok(Common { camera, orientation, ground, frames_all: self.all, categories })
+        let shared = Shared { camera, orientation, ground, categories };
+        Ok(Common { shared, frames_all: self.all })
     }
 }
 

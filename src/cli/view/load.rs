@@ -5,18 +5,17 @@ use super::content::Content;
 use super::digits;
 use super::loading::{Progress, Step};
 use super::viewer::Facts;
-use crate::cli::annotations::{FrameFacts, annotate};
 use crate::cli::devices::Attached;
 use crate::cli::failure::Failure;
-use crate::cli::render::{Job, check_legend, focus};
+use crate::cli::render::{Job, check_legend, frame_number};
 use crate::cli::source::Source;
 use glam::DVec3;
 use rayon::prelude::*;
 use spherule_render::World;
+use spherule_render::compose::{self, CellRequest, Labels, Request, Staged, Subject, Value};
 use spherule_render::scene::particles::{
-    self, ArrowSizes, Cell, Codes, Coloring, ColumnColors, FrameChoice, Kind, Kinds, Legend, Model,
-    NumberColumn, Orientation, ParticleStyle, Particles, ReadOptions, ReadProgress, Role,
-    TextColumn,
+    self, ArrowSizes, Codes, Coloring, ColumnColors, FrameChoice, Kind, Kinds, Model, NumberColumn,
+    ParticleStyle, Particles, ReadOptions, ReadProgress, Role,
 };
 use spherule_render::scene::{Rgb, Scene, Spheres};
 use spherule_render::world::framing;
@@ -81,14 +80,6 @@ pub(super) struct Origin {
     stamp: Option<(SystemTime, u64)>,
 }
 
-/// Types and columns of the spheres.
-#[derive(Default)]
-pub(super) struct Labels {
-    kinds: Kinds,
-    numbers: Vec<NumberColumn>,
-    texts: Vec<TextColumn>,
-}
-
 impl Base {
     /// Reads the job's source. `before` was read last, and is returned if it is sufficient.
     pub(super) fn load(
@@ -121,10 +112,10 @@ impl Base {
         let mut particles = particles::read(path, &options)?;
         let more_columns = path.is_file() && has_many_values(&particles);
         // All else is applied to the particles of each picture.
-        let (select, model) = (job.looks.select.clone(), Some(Model::SpaceFilling));
+        let (select, model) = (job.request.style.select.clone(), Some(Model::SpaceFilling));
         let select = ParticleStyle { select, model, ..ParticleStyle::default() };
         select.apply(path, &mut particles)?;
-        job.views.repeat(path, &mut particles)?;
+        compose::repeat(job.request.cell, path, &mut particles)?;
         options.progress = ReadProgress::default();
         let frames = frames.or_else(|| count(path, &options, content.frame.is_some()));
         Ok(Self { particles, scene: None, frame: content.frame, frames, more_columns })
@@ -156,64 +147,53 @@ impl Base {
             frame: self.frame.unwrap_or(0),
             frames: self.frames,
             own_materials: self.scene.is_none()
-                && (job.looks.types.iter().any(|look| look.material.is_some())
+                && (job.request.style.types.iter().any(|look| look.material.is_some())
                     || self.particles.material_names.iter().any(|name| !name.is_empty())),
             ..Facts::default()
         }
     }
 }
 
-/// Particles with colors and materials, in a scene whose camera is not placed yet.
-struct StyledScene {
-    scene: Scene,
-    labels: Labels,
-    legend: Option<Legend>,
-    cell: Option<Cell>,
-    /// True if the particles are drawn as a crystal because nothing else is asked for.
-    is_crystal: bool,
-    /// The orientation of the particles, if the scene is of particles.
-    orientation: Option<Orientation>,
-    facts: FrameFacts,
-    /// Center of the particle in focus, if the focus is a particle.
-    focus: Option<DVec3>,
-    /// Scale and radius of arrows, if there are any.
+/// Composes the scene of the content: that of the command line, without what is hidden, and with the colors and the
+/// preset that are chosen since.
+fn stage(
+    job: &Job,
+    content: &Content,
     arrow_sizes: Option<ArrowSizes>,
-}
-
-impl StyledScene {
-    fn new(
-        job: &Job,
-        content: &Content,
-        arrow_sizes: Option<ArrowSizes>,
-        mut particles: Particles,
-        scene: Option<Scene>,
-    ) -> Result<Self, Failure> {
-        let legend = apply_style(job, content, arrow_sizes, &mut particles)?;
-        let arrow_sizes = particles.arrows.sizes;
-        let (cell, is_crystal) = (particles.cell, job.looks.draws_crystal(&particles));
-        let name = job.source.name();
-        let focus = focus(job, Path::new(name.as_ref()), &particles)?;
-        let facts = match scene {
-            Some(_) => FrameFacts::default(),
-            None => FrameFacts::of(job, &particles),
-        };
-        let labels = Labels {
-            kinds: std::mem::take(&mut particles.kinds),
-            numbers: std::mem::take(&mut particles.numbers),
-            texts: std::mem::take(&mut particles.texts),
-        };
-        let mut orientation = None;
-        let scene = if let Some(scene) = scene {
-            Scene { spheres: particles.spheres, ..scene }
-        } else {
-            let preset = content.preset.as_ref().map(|(preset, _)| *preset);
-            let found = job.views.orientation(&particles);
-            let title = job.source.title(&Scene::default()).into_owned();
-            orientation = Some(found);
-            preset.or(job.preset()).unwrap_or_default().scene(particles, &title, &found)
-        };
-        Ok(Self { scene, labels, legend, cell, is_crystal, orientation, facts, focus, arrow_sizes })
+    mut particles: Particles,
+    scene: Option<Scene>,
+) -> Result<(Request, Staged), Failure> {
+    let mut request = Request {
+        style: restyled(job, content, arrow_sizes, &mut particles),
+        // They are wrapped and replicated as they are read.
+        cell: CellRequest { show: job.request.cell.show, ..CellRequest::default() },
+        keeps_labels: true,
+        ..job.request.clone()
+    };
+    if let Some((preset, camera)) = &content.preset {
+        request.preset = Some(*preset);
+        request.lit_from = Some(camera.clone());
     }
+    let name = job.source.name();
+    let title = job.source.title(&Scene::default()).into_owned();
+    let frame = content.frame.or(job.frame);
+    let frame =
+        frame.map_or_else(|| frame_number(job), |number| Ok(Value::Whole(number as i64)))?;
+    let subject = Subject { path: Path::new(&*name), title: &title, frame: &frame };
+    let staged = if let Some(scene) = scene {
+        let legend = request.style.apply(subject.path, &mut particles)?;
+        let Particles { spheres, kinds, numbers, texts, .. } = particles;
+        let scene = compose::Content::Scene(Box::new(Scene { spheres, ..scene }));
+        let staged = compose::stage(&request, &subject, scene, None);
+        let labels = Labels { kinds, numbers, texts };
+        staged.map(|mut staged| {
+            (staged.legend, staged.labels) = (legend, labels);
+            staged
+        })
+    } else {
+        compose::stage(&request, &subject, compose::Content::Particles(Box::new(particles)), None)
+    };
+    Ok((request, staged.map_err(|fault| job.refuse(fault))?))
 }
 
 /// Loads one stage after another, and keeps what was read last unless it is large.
@@ -246,7 +226,6 @@ impl Loader {
         let read = Base::load(job, content, self.base.take(), progress)?;
         let facts = read.facts(job);
         let many = read.particles.spheres.len() > MANY;
-        let has_scene = read.scene.is_some();
         let (particles, scene) = if many {
             (read.particles, read.scene)
         } else {
@@ -254,38 +233,15 @@ impl Loader {
             self.base = Some(read);
             parts
         };
-        let styled = StyledScene::new(job, content, self.arrow_sizes, particles, scene)?;
-        self.arrow_sizes = self.arrow_sizes.or(styled.arrow_sizes);
-        let StyledScene { mut scene, labels, legend, cell, orientation, focus, .. } = styled;
+        let (request, mut staged) = stage(job, content, self.arrow_sizes, particles, scene)?;
+        self.arrow_sizes = self.arrow_sizes.or(staged.arrow_sizes);
         if first {
-            check_legend(job, legend.as_ref())?;
+            check_legend(job, staged.legend.as_ref())?;
         }
-        let cuts = job.slices.cut(
-            &mut scene,
-            Path::new(&*job.source.name()),
-            cell.map(|cell| cell.bounds()),
-            false,
-        )?;
-        job.style.set(job.preset(), &mut scene);
-        job.views.show_cell(&mut scene, cell.as_ref(), styled.is_crystal);
-        annotate(job, &mut scene, legend.as_ref(), &styled.facts)?;
-        job.picture.settings.apply(&mut scene.settings);
-        job.views.frame(&mut scene, orientation.as_ref(), None, &cuts)?;
+        compose::place(&request, &mut staged, None, None).map_err(|fault| job.refuse(fault))?;
+        let Staged { mut scene, labels, legend, orientation, .. } = staged;
         let failed = |error| Failure::World(job.source.name().into_owned(), error);
         framing::include_points(&mut scene, &[]).map_err(failed)?;
-        job.views.set_lens(&mut scene, focus)?;
-        if let Some((preset, camera)) = &content.preset {
-            let home = std::mem::replace(&mut scene.camera, camera.clone());
-            if has_scene {
-                preset.replace_materials(&mut scene);
-            }
-            preset.light(&mut scene, camera.up);
-            scene.camera = home;
-            scene.look = job.style.look(Some(*preset), scene.look);
-        } else if let Some(preset) = job.preset() {
-            let vertical = job.views.vertical(&scene.camera, orientation.as_ref());
-            preset.light(&mut scene, vertical);
-        }
         let count = scene.spheres.len();
         let facts = Facts {
             title: job.source.title(&scene).into_owned(),
@@ -350,8 +306,8 @@ impl Origin {
             return failed("the file has changed since it was read; open it again");
         }
         let base = Base::load(&self.job, &self.content, None, &Progress::default())?;
-        let dressed = StyledScene::new(&self.job, &self.content, None, base.particles, base.scene)?;
-        Ok(dressed.scene.spheres)
+        let (_, staged) = stage(&self.job, &self.content, None, base.particles, base.scene)?;
+        Ok(staged.scene.spheres)
     }
 }
 
@@ -386,38 +342,25 @@ fn sketch(spheres: &Spheres) -> Spheres {
     some
 }
 
-impl Labels {
-    /// Type of a sphere, if it has one.
-    pub(super) fn kind(&self, row: usize) -> Option<&str> {
-        self.kinds.kind(row).map(|kind| kind.name.as_str())
-    }
-
-    /// Number of the sphere in its file, if it is not its row.
-    pub(super) fn id(&self, row: usize) -> Option<f64> {
-        let column = self.numbers.iter().find(|column| column.name == "id")?;
-        column.values.get(row).copied()
-    }
-
-    /// Values of the file's columns for a sphere.
-    pub(super) fn columns(&self, row: usize) -> impl Iterator<Item = String> {
-        let numbers = self.numbers.iter().filter(|column| column.name != "id");
-        let numbers = numbers.filter_map(move |column| {
-            let value = *column.values.get(row)?;
-            let text = digits::value(value, digits::range(&column.values));
-            Some(format!("{} = {text}", column.name))
-        });
-        let texts = self.texts.iter().filter(move |column| row < column.codes.len());
-        numbers.chain(texts.map(move |column| format!("{} = {}", column.name, column.text(row))))
-    }
+/// Values of the file's columns for a sphere.
+pub(super) fn columns(labels: &Labels, row: usize) -> impl Iterator<Item = String> {
+    let numbers = labels.numbers.iter().filter(|column| column.name != "id");
+    let numbers = numbers.filter_map(move |column| {
+        let value = *column.values.get(row)?;
+        let text = digits::value(value, digits::range(&column.values));
+        Some(format!("{} = {text}", column.name))
+    });
+    let texts = labels.texts.iter().filter(move |column| row < column.codes.len());
+    numbers.chain(texts.map(move |column| format!("{} = {}", column.name, column.text(row))))
 }
 
-/// Drops hidden particles and colors the rest; returns the legend of the colors.
-fn apply_style(
+/// Returns the style of the command line, without hidden particles, and with the colors that are chosen.
+fn restyled(
     job: &Job,
     content: &Content,
     arrow_sizes: Option<ArrowSizes>,
     particles: &mut Particles,
-) -> Result<Option<Legend>, Failure> {
+) -> ParticleStyle {
     let condition = content.condition();
     if condition.is_some() && !particles.numbers.iter().any(|column| column.name == "id") {
         let values = (0..particles.spheres.len()).map(|row| row as f64).collect();
@@ -428,13 +371,13 @@ fn apply_style(
         .color
         .clone()
         .map(|column| Coloring::Column(ColumnColors { column, ..ColumnColors::default() }));
-    let coloring = coloring.unwrap_or_else(|| job.looks.coloring.clone());
-    let mut looks = ParticleStyle { select, coloring, allow_empty: false, ..job.looks.clone() };
-    if let (Some(arrows), Some(sizes)) = (&mut looks.arrows, arrow_sizes) {
+    let coloring = coloring.unwrap_or_else(|| job.request.style.coloring.clone());
+    let style = job.request.style.clone();
+    let mut style = ParticleStyle { select, coloring, allow_empty: false, ..style };
+    if let (Some(arrows), Some(sizes)) = (&mut style.arrows, arrow_sizes) {
         arrows.fix(sizes);
     }
-    let name = job.source.name();
-    Ok(looks.apply(Path::new(name.as_ref()), particles)?)
+    style
 }
 
 /// Returns whether particles have more values than are read in advance.
@@ -465,4 +408,99 @@ fn count(path: &Path, options: &ReadOptions, asked: bool) -> Option<u64> {
 fn size(scene: &Scene) -> f64 {
     let size = scene.bounds().map_or(0.0, |[low, high]| (high - low).length() / 2.0);
     if size.is_finite() && size > 0.0 { size } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::args::{Args, Command};
+    use crate::cli::render::PlacedScene;
+    use clap::Parser;
+    use rand_xoshiro::SplitMix64;
+    use rand_xoshiro::rand_core::{Rng, SeedableRng};
+    use spherule_render::scene::text_without_columns;
+
+    /// Options, of which one of a line may be given.
+    const GROUPS: [&[&str]; 17] = [
+        &["--wrap"],
+        &["--cell"],
+        &["--up=x", "--up=-y", "--up=z"],
+        &["--view=auto", "--view=iso", "--view=-x", "--view=z"],
+        &["--projection=orthographic"],
+        &["--margin=0.3"],
+        &["--aperture=0.2", "--aperture=0.1 --focus=9", "--aperture=0.1 --focus=id:2"],
+        &[
+            "--preset=chalk",
+            "--preset=studio",
+            "--preset=cloudy",
+            "--preset=glossy",
+            "--preset=outline",
+            "--preset=ghost",
+            "--preset=x-ray",
+        ],
+        &["--background=#204060", "--background=sky"],
+        &["--select=z>1.5"],
+        &[
+            "--color-by=tags",
+            "--color-by=z --color-bar=left",
+            "--colors=cpk --legend",
+            "--color-by=species --legend=top",
+        ],
+        &["--model=ball-and-stick", "--model=licorice --bond-radius=0.1", "--bonds=*-*<3"],
+        &["--opacity=0.5", "--translucent=z>2"],
+        &["--type=Cu:color=teal,radius=0.9"],
+        &[
+            "--slice=z>60%",
+            "--slice=x>2 --slice-mode=caps",
+            "--slice=y<1 --slice-mode=hide",
+            "--slice=z>90%",
+        ],
+        &["--axes", "--axes=cell", "--scale-bar=2:bottom", "--label={particles} --text-size=0.05"],
+        &["--integrator=ao", "--depth=1 --exposure=1"],
+    ];
+
+    /// The scene of the command line and that of the viewer, as texts and columns, or their errors.
+    fn scenes(options: &[&str]) -> [Result<(String, Spheres), String>; 2] {
+        let words = options.iter().flat_map(|option| option.split(' '));
+        let path = "tests/data/particles/surface.extxyz";
+        let words = ["spherule", "render", path, "--size=64x48", "--spp=4", "--denoise=off"]
+            .into_iter()
+            .chain(words);
+        let args = Args::try_parse_from(words).expect("options");
+        let Some(Command::Render(args)) = args.command else { panic!("a render") };
+        let job = Arc::new(Job::new(Box::leak(args)).expect("a job"));
+        let described = |scene: &Scene| {
+            (text_without_columns(scene).expect("no picture"), scene.spheres.clone())
+        };
+        let rendered = PlacedScene::load(&job, None).and_then(|placed| {
+            let mut scene = placed.scene;
+            let failed = |error| Failure::World(String::new(), error);
+            framing::include_points(&mut scene, &[]).map_err(failed)?;
+            Ok(described(&scene))
+        });
+        let mut loader = Loader::new(Arc::clone(&job));
+        let seen = loader.load(&Content::default(), &Progress::default());
+        let seen = seen.map(|loaded| described(&loaded.scene.read().expect("no panic")));
+        [rendered, seen].map(|scene| scene.map_err(|error| error.to_string()))
+    }
+
+    #[test]
+    fn viewers_show_the_scene_that_is_rendered() {
+        let each = GROUPS.iter().flat_map(|group| group.iter().map(|option| vec![*option]));
+        let mut cases: Vec<Vec<&str>> = each.collect();
+        let mut random = SplitMix64::seed_from_u64(5);
+        let mut below = |count: usize| (random.next_u64() % count as u64) as usize;
+        for _ in 0..200 {
+            let some =
+                GROUPS.iter().filter_map(|group| (below(5) < 2).then(|| group[below(group.len())]));
+            cases.push(some.collect());
+        }
+        let mut agreed = 0;
+        for case in cases {
+            let [rendered, seen] = scenes(&case);
+            agreed += u32::from(rendered.is_ok());
+            assert_eq!(rendered, seen, "{case:?}");
+        }
+        assert!(agreed > 150, "{agreed}");
+    }
 }

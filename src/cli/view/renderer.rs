@@ -3,7 +3,7 @@
 use super::camera_control::CameraControl;
 use super::digits;
 use super::image::{Picture, Quality, RenderRequest};
-use super::load::LoadedScene;
+use super::load::{LoadedScene, columns};
 use super::overlay::{OverlaidImage, OverlayCache};
 use super::tonemap::{ToneMapped, ToneMapper};
 use crate::cli::failure::Failure;
@@ -259,7 +259,7 @@ impl Renderer {
         let length = digits::value(radius, extent);
         let named = kind.as_ref().map_or(String::new(), |kind| format!("type {kind}, "));
         let mut text = format!("sphere {id}: {named}at {a} {b} {c}, radius {length}");
-        for column in labels.columns(row) {
+        for column in columns(labels, row) {
             text += ", ";
             text += &column;
         }

@@ -26,7 +26,7 @@ pub(super) struct SavedImage<'a> {
 /// Writes the image, as `spherule render` does for the saved scene.
 pub(super) fn save_picture(seen: &SavedImage, path: &Path) -> Result<(), Failure> {
     let format = Format::of_suffix(path)?;
-    check_alpha(&seen.look, format)?;
+    check_alpha(seen.look.is_transparent(), format)?;
     let Settings { width, height, exposure, tone, .. } = *seen.settings;
     let mut options = WriteOptions { exposure, tone, ..WriteOptions::default() };
     let region = Region { x: 0, y: 0, width, height };

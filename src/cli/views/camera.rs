@@ -1,14 +1,11 @@
 //! Cameras: what is up, views from a side, projections and turntables.
 
 use super::ViewArgs;
-use crate::cli::failure::Failure;
-use glam::DVec3;
-use spherule_render::overlay::annotations;
-use spherule_render::scene::particles::{Orientation, Particles, UpReason};
-use spherule_render::scene::{Axis, Camera, Insets, Pose, Scene};
+use spherule_render::compose::CameraRequest;
+use spherule_render::scene::Axis;
+use spherule_render::scene::particles::{Orientation, UpReason};
 use spherule_render::suggest;
-use spherule_render::world::framing::view::{self, View};
-use spherule_render::world::{WorldError, framing};
+use spherule_render::world::framing::view::View;
 use std::f64::consts::TAU;
 
 /// The direction that is up, or `auto`.
@@ -40,13 +37,15 @@ pub(super) fn margin(text: &str) -> Result<f64, String> {
 }
 
 impl ViewArgs {
-    /// Returns the orientation of particles, with the direction that `--up` chooses.
-    pub(in crate::cli) fn orientation(&self, particles: &Particles) -> Orientation {
-        let found = Orientation::of(particles);
-        match self.up {
-            Some(UpArg(Some(up))) => Orientation { up, reason: UpReason::Chosen, ..found },
-            Some(UpArg(None)) | None => found,
-        }
+    /// Returns the direction that is up, if one is chosen.
+    pub(in crate::cli) fn up(&self) -> Option<Axis> {
+        self.up.and_then(|up| up.0)
+    }
+
+    /// Returns the view that is asked for.
+    pub(in crate::cli) fn camera(&self) -> CameraRequest {
+        let Self { view, projection, margin, turntable, .. } = *self;
+        CameraRequest { view, projection, margin, turns: turntable.is_some() }
     }
 
     /// Returns a sentence on what is up and why; `None` if the view does not depend on it.
@@ -61,79 +60,10 @@ impl ViewArgs {
         (!chosen).then(|| format!("{} is up: {reason}; --up chooses another direction", up.name()))
     }
 
-    /// Places the camera of a scene whose image size is set, for image `turn` of a turntable. `normals` are
-    /// those of slices, as [`ViewArgs::choose`] takes them.
-    pub(in crate::cli) fn frame(
-        &self,
-        scene: &mut Scene,
-        orientation: Option<&Orientation>,
-        turn: Option<u32>,
-        normals: &[DVec3],
-    ) -> Result<(), Failure> {
-        self.choose(scene, orientation, normals)?;
-        let corners = corners(scene);
-        if let Some(turn) = turn {
-            framing::orbit(scene, &corners, self.angle(turn));
-        }
-        let name = scene.title.clone();
-        let failure = |error: WorldError| Failure::World(name, error);
-        if corners.is_empty() {
-            Ok(())
-        } else {
-            framing::include_points(scene, &corners).map_err(failure)
-        }
-    }
-
     /// Angle of an image of the turntable, in radians.
     pub(in crate::cli) fn angle(&self, turn: u32) -> f64 {
         TAU * f64::from(turn) / f64::from(self.turntable.unwrap_or(1))
     }
-
-    /// Sets projection and direction of the camera of a scene, and leaves room for its annotations, but does
-    /// not set its position. `orientation` is that of particles. The default view shows the caps of slices,
-    /// whose `normals` point to the side that is cut away.
-    pub(in crate::cli) fn choose(
-        &self,
-        scene: &mut Scene,
-        orientation: Option<&Orientation>,
-        normals: &[DVec3],
-    ) -> Result<(), Failure> {
-        if let Some(projection) = self.projection {
-            let same = std::mem::discriminant(&projection)
-                == std::mem::discriminant(&scene.camera.projection);
-            if !same {
-                scene.camera.projection = projection;
-            }
-        }
-        view::choose(scene, self.view, orientation, normals);
-        match (&mut scene.camera.pose, self.margin) {
-            (Pose::Fit { margin, .. }, Some(typed)) => *margin = typed,
-            (Pose::LookAt { .. }, Some(_)) => {
-                let message = "--margin has no effect on the scene's own camera; add --view";
-                return Err(Failure::usage("render", message));
-            }
-            (_, None) => (),
-        }
-        if scene.camera.insets == Insets::default() {
-            scene.camera.insets = annotations::insets(scene, self.turntable.is_some());
-        }
-        Ok(())
-    }
-
-    /// Returns the direction that is up in a scene whose camera is chosen: that of the ground. In a view
-    /// from above it is not that of the image.
-    pub(in crate::cli) fn vertical(
-        &self,
-        camera: &Camera,
-        orientation: Option<&Orientation>,
-    ) -> DVec3 {
-        view::vertical(self.view, camera, orientation)
-    }
-}
-
-/// Points that must be in view besides spheres: the corners of a cell that is drawn.
-pub(in crate::cli) fn corners(scene: &Scene) -> Vec<DVec3> {
-    scene.look.cell.map_or_else(Vec::new, |cell| cell.corners().to_vec())
 }
 
 #[cfg(test)]

@@ -6,15 +6,13 @@ mod periodic;
 mod style;
 
 use self::camera::UpArg;
-pub(super) use self::camera::corners;
 use self::lens::LensArgs;
 pub(super) use self::style::StyleArgs;
-use super::failure::Failure;
 use super::names::{self, Names};
 use super::settings::List;
 use clap::value_parser;
-use glam::DVec3;
 use serde_json::json;
+use spherule_render::compose::LensRequest;
 use spherule_render::scene::particles::Orientation;
 use spherule_render::scene::{Axis, Camera, Projection, Scene};
 use spherule_render::world::framing::view::{self, View};
@@ -123,19 +121,13 @@ impl ViewArgs {
         list
     }
 
-    /// Returns the id of the particle in focus, if the focus is a particle.
-    pub(super) fn particle_in_focus(&self) -> Option<f64> {
-        self.lens.particle()
+    /// Returns the lens that is asked for.
+    pub(super) fn lens(&self) -> LensRequest {
+        self.lens.request()
     }
 
     /// Returns whether a focus is given that the scene's camera ignores.
     pub(super) fn has_idle_focus(&self, scene: &Scene) -> bool {
         self.lens.is_idle(scene)
-    }
-
-    /// Sets the lens of a scene's camera, whose view is chosen; `focus` is the center of the particle in
-    /// focus, if the focus is a particle.
-    pub(super) fn set_lens(&self, scene: &mut Scene, focus: Option<DVec3>) -> Result<(), Failure> {
-        self.lens.set(scene, focus)
     }
 }

@@ -2,9 +2,7 @@
 
 use super::ViewArgs;
 use crate::cli::failure::Failure;
-use spherule_render::scene::particles::{Cell, Particles, PeriodicError};
-use spherule_render::scene::{FileError, Scene};
-use std::path::Path;
+use spherule_render::compose::CellRequest;
 
 /// `NA,NB,NC`.
 pub(super) fn copies(text: &str) -> Result<[u32; 3], String> {
@@ -25,35 +23,9 @@ impl ViewArgs {
         Ok(())
     }
 
-    /// Draws the cell if `--cell` is given, and that of a crystal.
-    pub(in crate::cli) fn show_cell(
-        &self,
-        scene: &mut Scene,
-        cell: Option<&Cell>,
-        is_crystal: bool,
-    ) {
-        if self.cell || is_crystal {
-            scene.look.cell = cell.copied();
-        }
-    }
-
-    /// Wraps and replicates particles as requested; returns the resulting cell, if there is one.
-    pub(in crate::cli) fn repeat(
-        &self,
-        path: &Path,
-        particles: &mut Particles,
-    ) -> Result<Option<Cell>, FileError> {
-        let refused = |error: PeriodicError| FileError::whole_file(path, error.to_string());
-        if self.wrap {
-            particles.wrap().map_err(refused)?;
-        }
-        if let Some(copies) = self.replicate {
-            particles.replicate(copies).map_err(refused)?;
-        }
-        if self.cell && particles.cell.is_none() {
-            return Err(FileError::whole_file(path, "has no simulation cell to draw"));
-        }
-        Ok(particles.cell)
+    /// Returns what is done to the cell.
+    pub(in crate::cli) fn cell(&self) -> CellRequest {
+        CellRequest { wrap: self.wrap, copies: self.replicate, show: self.cell }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::cli::settings::List;
 use serde_json::json;
-use spherule_render::scene::{Background, Look, Preset, Scene};
+use spherule_render::scene::{Background, Preset};
 use spherule_render::{color, suggest};
 
 /// Options for presets and backgrounds.
@@ -55,20 +55,9 @@ impl StyleArgs {
         self.preset
     }
 
-    /// Returns the look: that of the preset or else of the scene, with the scene's cell, and with the
-    /// background of `--background`.
-    pub(in crate::cli) fn look(&self, preset: Option<Preset>, own: Look) -> Look {
-        let look = preset.map_or(own, Preset::look);
-        let typed = self.background.as_ref().map(|typed| typed.background);
-        Look { background: typed.unwrap_or(look.background), cell: own.cell, ..look }
-    }
-
-    /// Applies a preset's settings and look, before options override them.
-    pub(in crate::cli) fn set(&self, preset: Option<Preset>, scene: &mut Scene) {
-        if let Some(preset) = preset {
-            preset.set(scene);
-        }
-        scene.look = self.look(preset, scene.look);
+    /// Returns the background that is given.
+    pub(in crate::cli) fn background(&self) -> Option<Background> {
+        self.background.as_ref().map(|typed| typed.background)
     }
 
     /// Settings for the image's metadata.

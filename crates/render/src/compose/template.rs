@@ -1,6 +1,6 @@
 //! Templates of labels: text with fields in braces.
 
-use spherule_render::suggest;
+use crate::suggest;
 use std::str::FromStr;
 
 /// Maximum number of characters of a label.
@@ -8,7 +8,7 @@ const MAX_LENGTH: usize = 400;
 
 /// Text with fields.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Template(Vec<Part>);
+pub struct Template(Vec<Part>);
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Part {
@@ -22,9 +22,12 @@ enum Part {
 
 /// The value of a field.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Value {
+pub enum Value {
+    /// Text, which may be a number.
     Text(String),
+    /// A number.
     Number(f64),
+    /// A count.
     Whole(i64),
     /// The file does not have it; the reason.
     Missing(&'static str),
@@ -86,7 +89,10 @@ fn field_of(text: &str) -> Result<Part, String> {
 
 impl Template {
     /// Returns the text with the values of its fields, of which the first with a name counts.
-    pub(super) fn expand(&self, fields: &[(String, Value)]) -> Result<String, String> {
+    ///
+    /// # Errors
+    /// A field is unknown, or has no value.
+    pub fn expand(&self, fields: &[(String, Value)]) -> Result<String, String> {
         let mut text = String::new();
         for part in &self.0 {
             match part {
@@ -102,7 +108,7 @@ impl Template {
     }
 
     /// Returns whether the text has a field.
-    pub(super) fn has(&self, field: &str) -> bool {
+    pub fn has(&self, field: &str) -> bool {
         self.0.iter().any(|part| matches!(part, Part::Field { name, .. } if name == field))
     }
 }
