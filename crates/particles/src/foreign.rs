@@ -7,9 +7,30 @@ use std::path::Path;
 #[derive(Debug, PartialEq)]
 pub(crate) struct Foreign {
     /// Name with an article, to follow "is".
-    pub(crate) name: String,
+    pub(crate) name: &'static str,
     /// A command to type.
     pub(crate) help: String,
+}
+
+/// The sign by which a format is detected.
+enum Sign {
+    /// A binary file has one of these at this offset.
+    Bytes(usize, &'static [&'static [u8]]),
+    /// A test of the head of a binary file.
+    Binary(fn(&[u8]) -> bool),
+    /// A text begins with one of these, in any case.
+    Words(&'static [&'static str]),
+    /// A test of a text.
+    Text(fn(&Head) -> bool),
+}
+use Sign::{Binary, Bytes, Text, Words};
+
+/// The head of a text.
+struct Head<'a> {
+    bytes: &'a [u8],
+    /// The first line that is not blank, without the blanks around it.
+    first: &'a [u8],
+    lines: Vec<&'a [u8]>,
 }
 
 /// Conversions to supported formats; `{file}` is replaced by the file, `{stem}` by its name without
@@ -27,114 +48,87 @@ const HDF5: &str = "write one of its arrays: python3 -c \"import h5py, numpy; nu
      h5py.File('{file}')['NAME'][:])\"; h5ls -r {file} lists them";
 const MESH: &str = "write its points: python3 -c \"import meshio, numpy; numpy.save('{stem}.npy', \
                     meshio.read('{file}').points)\"";
+const OBJ: &str =
+    "write its points: awk '$1==\"v\" {print $2, $3, $4}' {file} | spherule render - -o {stem}.png";
+const TACHYON: &str = "write its spheres: awk '$1==\"SPHERE\" {print $3, $4, $5, $7}' {file} | spherule render - -o {stem}.png";
 const GADGET: &str = "write its positions: python3 -c \"import pynbody, numpy; numpy.save('{stem}.npy', \
      pynbody.load('{file}')['pos'])\"";
 const SHEET: &str = "write its first sheet: libreoffice --headless --convert-to csv {file}";
 const MATLAB: &str = "write one of its arrays: python3 -c \"import scipy.io, numpy; numpy.save('{stem}.npy', \
      scipy.io.loadmat('{file}')['NAME'])\"";
-const FRAME: &str = "write it as CSV: python3 -c \"import pandas; pandas.read_{kind}('{file}').to_csv('{stem}.csv', index=False)\"";
+const PARQUET: &str = "write it as CSV: python3 -c \"import pandas; pandas.read_parquet('{file}').to_csv('{stem}.csv', index=False)\"";
+const FEATHER: &str = "write it as CSV: python3 -c \"import pandas; pandas.read_feather('{file}').to_csv('{stem}.csv', index=False)\"";
+const XML: &str = "write its positions as CSV: python3 -c \"import pandas; pandas.read_xml('{file}').to_csv('{stem}.csv', index=False)\"";
+const JSON: &str = "write its positions as CSV: python3 -c \"import pandas; pandas.read_json('{file}').to_csv('{stem}.csv')\"";
 const RESTART: &str = "have LAMMPS write it as text: lmp -restart2data {file} {stem}.data";
-const BINARY_DUMP: &str = "have LAMMPS' tool write it as text: binary2txt {file}";
+const DUMP: &str = "have LAMMPS' tool write it as text: binary2txt {file}";
 const CLOUD: &str = "write it as PLY: pdal translate {file} {stem}.ply";
+const CUBE: &str = "convert it: ase convert -i cube -o extxyz {file} {stem}.xyz";
+const GROMOS: &str = "convert it: gmx editconf -f {file} -o {stem}.gro";
+const PREPARED: &str =
+    "render it: spherule render {file} -o {stem}.png; or name the file that it was made of";
+const CHECKPOINT: &str =
+    "resume it: spherule render --resume {file}; or merge parts: spherule merge";
+const SKY: &str =
+    "a picture can light a scene, as in environment = { kind = \"picture\", file = \"{file}\" }";
+const NONE: &str = "name a file of particles or a scene";
+const SEVEN_ZIP: &str =
+    "unpack one of its files: 7z x -so {file} NAME | spherule render - -o {stem}.png";
+const RAR: &str =
+    "unpack one of its files: unrar p -inul {file} NAME | spherule render - -o {stem}.png";
+const TAR: &str = "read one of its files: tar -xOf {file} NAME | spherule render - -o {stem}.png; tar -tf {file} lists them";
+const PAGE: &str = "a download went wrong: fetch the file itself, as in curl -LO URL";
+const LFS: &str = "fetch the file: git lfs pull";
 
-/// Magic numbers of binary files: offset, bytes, name, conversion.
-const MAGICS: [(usize, &[u8], &str, &str); 21] = [
-    (0, b"# vtk DataFile", "a VTK file", MESH),
-    (0, b"LammpS RestartT", "a binary restart file of LAMMPS", RESTART),
-    (8, b"DUMPATOM", "a binary dump of LAMMPS", BINARY_DUMP),
-    (8, b"DUMPCUSTOM", "a binary dump of LAMMPS", BINARY_DUMP),
-    (0, b"#!TDV", "a binary Tecplot file", MESH),
-    (0, b"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", "a workbook of Excel (XLS)", SHEET),
-    (0, b"MATLAB 5.0 MAT-file", "a MATLAB file", MATLAB),
-    (0, b"PAR1", "a Parquet file", FRAME),
-    (0, b"ARROW1", "a Feather file", FRAME),
-    (0, b"LASF", "a LAS point cloud", CLOUD),
-    (0, b"ASTM-E57", "an E57 point cloud", CLOUD),
-    (0, b"# .PCD", "a PCD point cloud", CLOUD),
+/// The formats, each with its name and conversion. The first whose sign is found is meant.
+const FORMATS: &[(Sign, &str, &str)] = &[
+    (Bytes(0, &[b"# vtk DataFile"]), "a VTK file", MESH),
+    (Bytes(0, &[b"LammpS RestartT"]), "a binary restart file of LAMMPS", RESTART),
+    (Bytes(8, &[b"DUMPATOM", b"DUMPCUSTOM"]), "a binary dump of LAMMPS", DUMP),
+    (Bytes(0, &[b"#!TDV"]), "a binary Tecplot file", MESH),
+    (Bytes(0, &[b"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1"]), "a workbook of Excel (XLS)", SHEET),
+    (Bytes(0, &[b"MATLAB 5.0 MAT-file"]), "a MATLAB file", MATLAB),
+    (Bytes(0, &[b"PAR1"]), "a Parquet file", PARQUET),
+    (Bytes(0, &[b"ARROW1"]), "a Feather file", FEATHER),
+    (Bytes(0, &[b"LASF"]), "a LAS point cloud", CLOUD),
+    (Bytes(0, &[b"ASTM-E57"]), "an E57 point cloud", CLOUD),
+    (Bytes(0, &[b"# .PCD"]), "a PCD point cloud", CLOUD),
+    (Bytes(0, &[b"spherule-prepared\n"]), "a prepared scene", PREPARED),
     (
-        0,
-        b"spherule-prepared\n",
-        "a prepared scene",
-        "render it: spherule render {file} -o {stem}.png; or name the file that it was made of",
-    ),
-    (
-        0,
-        b"spherule-checkpoint\n",
+        Bytes(0, &[b"spherule-checkpoint\n"]),
         "a checkpoint or a part of a render, not a scene",
-        "resume it: spherule render --resume {file}; or merge parts: spherule merge",
+        CHECKPOINT,
     ),
-    (
-        0,
-        b"\x89PNG\r\n",
-        "a picture (PNG)",
-        "a picture can light a scene, as in environment = {{ kind = \"picture\", file = \"{file}\" }}",
-    ),
-    (0, b"\xFF\xD8\xFF", "a picture (JPEG)", "name a file of particles or a scene"),
-    (
-        0,
-        b"\x76\x2F\x31\x01",
-        "a picture (EXR)",
-        "a picture can light a scene, as in environment = {{ kind = \"picture\", file = \"{file}\" }}",
-    ),
-    (0, b"%PDF", "a PDF document", "name a file of particles or a scene"),
-    (
-        0,
-        b"7z\xBC\xAF\x27\x1C",
-        "a 7-Zip archive",
-        "unpack one of its files: 7z x -so {file} NAME | spherule render - -o {stem}.png",
-    ),
-    (
-        0,
-        b"Rar!\x1A\x07",
-        "a RAR archive",
-        "unpack one of its files: unrar p -inul {file} NAME | spherule render - -o {stem}.png",
-    ),
-    (
-        257,
-        b"ustar",
-        "a tar archive",
-        "read one of its files: tar -xOf {file} NAME | spherule render - -o {stem}.png; tar -tf {file} lists them",
-    ),
+    (Bytes(0, &[b"\x89PNG\r\n"]), "a picture (PNG)", SKY),
+    (Bytes(0, &[b"\xFF\xD8\xFF"]), "a picture (JPEG)", NONE),
+    (Bytes(0, &[b"\x76\x2F\x31\x01"]), "a picture (EXR)", SKY),
+    (Bytes(0, &[b"%PDF"]), "a PDF document", NONE),
+    (Bytes(0, &[b"7z\xBC\xAF\x27\x1C"]), "a 7-Zip archive", SEVEN_ZIP),
+    (Bytes(0, &[b"Rar!\x1A\x07"]), "a RAR archive", RAR),
+    (Bytes(257, &[b"ustar"]), "a tar archive", TAR),
+    (Binary(is_spreadsheet), "a workbook of a spreadsheet", SHEET),
+    (Binary(is_gadget), "a snapshot of Gadget", GADGET),
+    (Binary(is_tng), "a TNG trajectory of GROMACS", TRAJECTORY),
+    (Words(&["%version"]), "a topology of Amber", TOPOLOGY),
+    (Words(&["title =", "title=", "variables =", "variables="]), "a Tecplot file", MESH),
+    (Words(&["<!doctype html", "<html"]), "a web page (HTML)", PAGE),
+    (Words(&["version https://git-lfs"]), "a pointer to a file that Git LFS keeps", LFS),
+    (Words(&["{", "["]), "a JSON file", JSON),
+    (Text(|t| t.first.eq_ignore_ascii_case(b"begin_scene")), "a scene of Tachyon", TACHYON),
+    (Text(|t| t.is_markup(&["<VTKFile"])), "a VTK file (XML)", MESH),
+    (Text(|t| t.is_markup(&["<cml", "xml-cml"])), "a CML file", MOLECULES),
+    (Words(&["<"]), "an XML file", XML),
+    (Text(|text| is_cube(&text.lines)), "a cube file of Gaussian", CUBE),
+    (Text(|text| is_charmm(&text.lines)), "a coordinate file of CHARMM (CRD)", ATOMS),
+    (Text(|text| is_amber(&text.lines)), "a restart file of Amber", WITH_TOPOLOGY),
+    (Text(|t| t.first == b"TITLE" && has_line(t.bytes, b"END")), "a GROMOS file (G96)", GROMOS),
+    (Text(|t| t.first.starts_with(b"ZONE ") || t.first == b"ZONE"), "a Tecplot file", MESH),
+    (Text(|t| t.first.starts_with(b"solid") && has_line(t.bytes, b"facet")), "an STL mesh", MESH),
+    (Text(|text| is_mesh(text.first)), "a Wavefront OBJ mesh", OBJ),
 ];
 
-/// First words of text files, in any case: words, name, conversion.
-const WORDS: [(&str, &str, &str); 11] = [
-    ("%version", "a topology of Amber", TOPOLOGY),
-    ("title =", "a Tecplot file", MESH),
-    ("title=", "a Tecplot file", MESH),
-    ("variables =", "a Tecplot file", MESH),
-    ("variables=", "a Tecplot file", MESH),
-    (
-        "<!doctype html",
-        "a web page (HTML)",
-        "a download went wrong: fetch the file itself, as in curl -LO URL",
-    ),
-    (
-        "<html",
-        "a web page (HTML)",
-        "a download went wrong: fetch the file itself, as in curl -LO URL",
-    ),
-    (
-        "version https://git-lfs",
-        "a pointer to a file that Git LFS keeps",
-        "fetch the file: git lfs pull",
-    ),
-    (
-        "{",
-        "a JSON file",
-        "write its positions as CSV: python3 -c \"import pandas; pandas.read_json('{file}').to_csv('{stem}.csv')\"",
-    ),
-    (
-        "[",
-        "a JSON file",
-        "write its positions as CSV: python3 -c \"import pandas; pandas.read_json('{file}').to_csv('{stem}.csv')\"",
-    ),
-    (
-        "begin_scene",
-        "a scene of Tachyon",
-        "write its spheres: awk '$1==\"SPHERE\" {print $3, $4, $5, $7}' {file} | spherule render - -o {stem}.png",
-    ),
-];
+/// The head of ZIP archives, among them those of NumPy, which are read.
+const ZIP: &[u8] = b"PK\x03\x04";
 
 /// Number of lines from which text formats are detected.
 const LINES: usize = 64;
@@ -149,110 +143,76 @@ fn fill_in(command: &str, path: &Path) -> String {
     command.replace("{file}", file).replace("{stem}", stem)
 }
 
-/// Returns a format with this name and conversion.
-fn foreign(name: &str, conversion: &str, path: &Path) -> Foreign {
-    let kind = if name.contains("Parquet") { "parquet" } else { "feather" };
-    let command = conversion.replace("{kind}", kind).replace("{{", "{").replace("}}", "}");
-    Foreign { name: name.to_owned(), help: fill_in(&command, path) }
-}
-
 /// Returns advice on an HDF5 file whose particles are not found.
 pub(crate) fn hdf5_help(path: &Path) -> String {
-    foreign("", HDF5, path).help
+    fill_in(HDF5, path)
+}
+
+/// Returns the first format whose sign a file has.
+fn find(path: &Path, has: impl Fn(&Sign) -> bool) -> Option<Foreign> {
+    let (_, name, conversion) = FORMATS.iter().find(|(sign, ..)| has(sign))?;
+    Some(Foreign { name, help: fill_in(conversion, path) })
 }
 
 /// Returns the format of a binary file with this head, if it is known.
 pub(crate) fn binary(head: &[u8], path: &Path) -> Option<Foreign> {
-    let has = |offset: usize, bytes: &[u8]| {
-        head.get(offset..).is_some_and(|rest| rest.starts_with(bytes))
-    };
-    let known = MAGICS.iter().find(|(offset, bytes, ..)| has(*offset, bytes));
-    if let Some((_, _, name, conversion)) = known {
-        return Some(foreign(name, conversion, path));
-    }
-    if has(0, b"PK\x03\x04") {
-        return archive(head, path);
-    }
-    let word = |offset: usize| head.get(offset..offset + 4)?.try_into().ok();
-    let big_endian = |offset: usize| word(offset).map_or(0, u32::from_be_bytes);
-    let little_endian = |offset: usize| word(offset).map_or(0, u32::from_le_bytes);
-    let is_gadget = |word: &dyn Fn(usize) -> u32| {
-        word(0) == 256 && word(260) == 256 || word(0) == 8 && has(4, b"HEAD") && word(12) == 8
-    };
-    if is_gadget(&big_endian) || is_gadget(&little_endian) {
-        return Some(foreign("a snapshot of Gadget", GADGET, path));
-    }
-    (head.get(..100)?.windows(6).any(|bytes| bytes == b"TRAJNG"))
-        .then(|| foreign("a TNG trajectory of GROMACS", TRAJECTORY, path))
-}
-
-/// Returns the format of a ZIP archive that is a document.
-fn archive(head: &[u8], path: &Path) -> Option<Foreign> {
-    let has = |text: &[u8]| memchr::memmem::find(head, text).is_some();
-    let is_sheet = has(b"[Content_Types].xml") || has(b"opendocument.spreadsheet");
-    is_sheet.then(|| foreign("a workbook of a spreadsheet", SHEET, path))
+    find(path, |sign| match sign {
+        Bytes(offset, any) => any.iter().any(|bytes| has_at(head, *offset, bytes)),
+        Binary(test) => test(head),
+        Words(_) | Text(_) => false,
+    })
 }
 
 /// Returns the format of a text file with this head, if it is known.
 pub(crate) fn text(head: &[u8], path: &Path) -> Option<Foreign> {
     let head = head.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(head);
-    let lines: Vec<&[u8]> =
-        head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii_end).take(LINES).collect();
+    let lines = head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii_end).take(LINES).collect();
     let content = head.trim_ascii_start();
     let first = content.split(|&byte| byte == b'\n').next()?.trim_ascii_end();
-    let starts_with = |words: &str| {
+    let starts_with = |words: &&str| {
         let start = content.get(..words.len()).unwrap_or_default();
         start.eq_ignore_ascii_case(words.as_bytes())
     };
-    // A keyword must be the whole line; other texts may be followed by more.
-    let is_complete = |words: &str| {
-        let is_keyword = words.bytes().all(|byte| byte.is_ascii_alphabetic() || byte == b'_');
-        !is_keyword || first.len() == words.len()
-    };
-    let known = WORDS.iter().find(|(words, ..)| starts_with(words) && is_complete(words));
-    if let Some((_, name, conversion)) = known {
-        return Some(foreign(name, conversion, path));
-    }
-    if starts_with("<?xml") || starts_with("<") {
-        return Some(markup(head, path));
-    }
-    let structures: [(bool, &str, &str); 7] = [
-        (
-            is_cube(&lines),
-            "a cube file of Gaussian",
-            "convert it: ase convert -i cube -o extxyz {file} {stem}.xyz",
-        ),
-        (is_charmm(&lines), "a coordinate file of CHARMM (CRD)", ATOMS),
-        (is_amber(&lines), "a restart file of Amber", WITH_TOPOLOGY),
-        (
-            first == b"TITLE" && has_line(head, b"END"),
-            "a GROMOS file (G96)",
-            "convert it: gmx editconf -f {file} -o {stem}.gro",
-        ),
-        (first.starts_with(b"ZONE ") || first == b"ZONE", "a Tecplot file", MESH),
-        (first.starts_with(b"solid") && has_line(head, b"facet"), "an STL mesh", MESH),
-        (
-            is_mesh(first),
-            "a Wavefront OBJ mesh",
-            "write its points: awk '$1==\"v\" {print $2, $3, $4}' {file} | spherule render - -o {stem}.png",
-        ),
-    ];
-    let (_, name, conversion) = structures.into_iter().find(|(matches, ..)| *matches)?;
-    Some(foreign(name, conversion, path))
+    let text = Head { bytes: head, first, lines };
+    find(path, |sign| match sign {
+        Words(any) => any.iter().any(starts_with),
+        Text(test) => test(&text),
+        Bytes(..) | Binary(_) => false,
+    })
 }
 
-/// Returns the format of an XML file with this head.
-fn markup(head: &[u8], path: &Path) -> Foreign {
-    let has = |text: &[u8]| memchr::memmem::find(head, text).is_some();
-    if has(b"<VTKFile") {
-        return foreign("a VTK file (XML)", MESH, path);
+impl Head<'_> {
+    /// Returns whether this is XML with one of these texts.
+    fn is_markup(&self, any: &[&str]) -> bool {
+        self.first.starts_with(b"<") && any.iter().any(|text| has(self.bytes, text))
     }
-    if has(b"<cml") || has(b"xml-cml") {
-        return foreign("a CML file", MOLECULES, path);
-    }
-    let conversion = "write its positions as CSV: python3 -c \"import pandas; \
-               pandas.read_xml('{file}').to_csv('{stem}.csv', index=False)\"";
-    foreign("an XML file", conversion, path)
+}
+
+fn has(head: &[u8], text: &str) -> bool {
+    memchr::memmem::find(head, text.as_bytes()).is_some()
+}
+
+fn has_at(head: &[u8], offset: usize, bytes: &[u8]) -> bool {
+    head.get(offset..).is_some_and(|rest| rest.starts_with(bytes))
+}
+
+/// Returns whether a file is a ZIP archive that is a document.
+fn is_spreadsheet(head: &[u8]) -> bool {
+    let is_document = has(head, "[Content_Types].xml") || has(head, "opendocument.spreadsheet");
+    head.starts_with(ZIP) && is_document
+}
+
+fn is_gadget(head: &[u8]) -> bool {
+    let word = |offset: usize| head.get(offset..offset + 4)?.try_into().ok();
+    [u32::from_be_bytes, u32::from_le_bytes].into_iter().any(|order: fn([u8; 4]) -> u32| {
+        let word = |offset: usize| word(offset).map_or(0, order);
+        word(0) == 256 && word(260) == 256
+            || word(0) == 8 && has_at(head, 4, b"HEAD") && word(12) == 8
+    })
+}
+
+fn is_tng(head: &[u8]) -> bool {
+    !head.starts_with(ZIP) && head.get(..100).is_some_and(|start| has(start, "TRAJNG"))
 }
 
 /// Returns whether any line starts with this text.
