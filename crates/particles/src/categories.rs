@@ -85,27 +85,39 @@ impl Codes {
 
     /// Keeps the rows for which `keep` is true.
     pub fn retain(&mut self, keep: &[bool]) {
-        match self {
-            Self::Bytes(codes) => retain(codes, keep),
-            Self::Shorts(codes) => retain(codes, keep),
-            Self::Words(codes) => retain(codes, keep),
-        }
+        self.change(RowChange::Retain(keep));
     }
 
-    /// Gathers rows: row `i` becomes the former row `rows[i]`.
-    pub(crate) fn pick(&mut self, rows: &[u32]) {
+    /// Changes the rows.
+    pub(crate) fn change(&mut self, change: RowChange) {
         match self {
-            Self::Bytes(codes) => pick(codes, rows),
-            Self::Shorts(codes) => pick(codes, rows),
-            Self::Words(codes) => pick(codes, rows),
+            Self::Bytes(codes) => change.apply(codes),
+            Self::Shorts(codes) => change.apply(codes),
+            Self::Words(codes) => change.apply(codes),
         }
     }
 }
 
-/// Gathers rows of a column: row `i` becomes the former row `rows[i]`. Empty columns stay empty.
-pub(crate) fn pick<T: Copy>(column: &mut Vec<T>, rows: &[u32]) {
-    if !column.is_empty() {
-        *column = rows.iter().map(|&row| column[row as usize]).collect();
+/// A change of the rows of columns, the same for each.
+#[derive(Clone, Copy)]
+pub(crate) enum RowChange<'a> {
+    /// Keeps the rows for which the value is true.
+    Retain(&'a [bool]),
+    /// Gathers rows: row `i` becomes the former row `rows[i]`.
+    Pick(&'a [u32]),
+    /// Keeps all rows, and frees unused capacity.
+    Shrink,
+}
+
+impl RowChange<'_> {
+    /// Changes the rows of a column. Empty columns stay empty.
+    pub(crate) fn apply<T: Copy>(self, column: &mut Vec<T>) {
+        match self {
+            Self::Pick(_) if column.is_empty() => {}
+            Self::Pick(rows) => *column = rows.iter().map(|&row| column[row as usize]).collect(),
+            Self::Retain(keep) => retain(column, keep),
+            Self::Shrink => column.shrink_to_fit(),
+        }
     }
 }
 

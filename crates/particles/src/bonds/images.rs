@@ -128,11 +128,7 @@ impl Bonds {
                 }
             }
         }
-        bonds.sort_unstable();
-        let sorted: Vec<Bond> = bonds.iter().map(|(bond, _)| *bond).collect();
-        let mut kinds = std::mem::take(&mut self.kinds);
-        kinds.codes.pick(&bonds.iter().map(|(_, row)| *row).collect::<Vec<u32>>());
-        *self = Self { kinds, partial: self.partial, ..Self::of_sorted(&sorted) };
+        self.replace(bonds);
     }
 }
 

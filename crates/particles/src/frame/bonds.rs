@@ -1,6 +1,6 @@
 //! Bonds between the particles of a frame, in columns.
 
-use crate::categories::TextColumn;
+use crate::categories::{RowChange, TextColumn};
 
 /// Bonds between the particles of a frame. Row `i` of every column belongs to bond `i`. Bonds are sorted by
 /// their first particle, second particle and shift, and each is listed once.
@@ -79,30 +79,36 @@ impl Bonds {
     /// Maps each bond to another one or to none, and sorts what is left. Of equal bonds the first is kept.
     pub(crate) fn map(&mut self, mut change: impl FnMut(Bond) -> Option<Bond>) {
         let changed = |bond| change(self.bond(bond)).map(|changed| (ordered(changed), bond as u32));
-        let mut bonds: Vec<(Bond, u32)> = (0..self.len()).filter_map(changed).collect();
+        self.replace((0..self.len()).filter_map(changed).collect());
+    }
+
+    /// Replaces the bonds by others, each with the bond whose type it has, and sorts them. Of equal bonds the first is
+    /// kept.
+    pub(crate) fn replace(&mut self, mut bonds: Vec<(Bond, u32)>) {
         if !bonds.is_sorted_by(|one, other| one.0 < other.0) {
             bonds.sort_unstable();
             bonds.dedup_by_key(|(bond, _)| *bond);
         }
         let sorted: Vec<Bond> = bonds.iter().map(|(bond, _)| *bond).collect();
         let mut kinds = std::mem::take(&mut self.kinds);
-        if !kinds.codes.is_empty() {
-            kinds.codes.pick(&bonds.iter().map(|(_, row)| *row).collect::<Vec<u32>>());
-        }
+        kinds.codes.change(RowChange::Pick(&bonds.iter().map(|bond| bond.1).collect::<Vec<u32>>()));
         *self = Self { kinds, partial: self.partial, ..Self::of_sorted(&sorted) };
     }
 
     /// Renumbers the bonds after the particles for which `keep` is false were removed; their bonds are
     /// removed too.
     pub fn retain(&mut self, keep: &[bool]) {
-        let mut next = 0;
-        let mut places = Vec::with_capacity(keep.len());
-        for &keep in keep {
-            places.push(next);
-            next += u32::from(keep);
+        let rows = (0..).zip(keep).filter_map(|(row, keep)| keep.then_some(row));
+        self.pick(&rows.collect::<Vec<u32>>());
+    }
+
+    /// Changes the rows of the particles.
+    pub(super) fn change(&mut self, change: RowChange) {
+        match change {
+            RowChange::Retain(keep) => self.retain(keep),
+            RowChange::Pick(rows) => self.pick(rows),
+            RowChange::Shrink => {}
         }
-        let place = |row: u32| keep[row as usize].then(|| places[row as usize]);
-        self.map(|(first, second, shift)| Some((place(first)?, place(second)?, shift)));
     }
 
     /// Renumbers the bonds after the particles were reordered: row `i` became the former row `rows[i]`.

@@ -10,7 +10,7 @@ pub use shapes::Shapes;
 pub use trails::Trails;
 
 use crate::Rgb;
-use crate::categories::{Kinds, TextColumn, pick, retain};
+use crate::categories::{Kinds, RowChange, TextColumn};
 use crate::cell::Cell;
 use crate::format::Format;
 use crate::role::Role;
@@ -159,38 +159,30 @@ impl ParticleFrame {
 
     /// Keeps the rows for which `keep` is true.
     pub fn retain(&mut self, keep: &[bool]) {
-        let values = self.numbers.iter_mut().map(|column| &mut column.values);
-        let columns = [&mut self.x, &mut self.y, &mut self.z, &mut self.radius];
-        columns.into_iter().chain(values).for_each(|column| retain(column, keep));
-        retain(&mut self.color, keep);
-        let texts = self.texts.iter_mut().chain([&mut self.materials]);
-        let codes = texts.map(|column| &mut column.codes).chain([&mut self.kinds.codes]);
-        codes.for_each(|codes| codes.retain(keep));
-        self.bonds.iter_mut().for_each(|bonds| bonds.retain(keep));
-        self.shapes.retain(keep);
-        self.trails.retain(keep);
+        self.change(RowChange::Retain(keep));
     }
 
     /// Gathers rows: row `i` becomes the former row `rows[i]`.
     pub(crate) fn pick(&mut self, rows: &[u32]) {
-        let values = self.numbers.iter_mut().map(|column| &mut column.values);
-        let columns = [&mut self.x, &mut self.y, &mut self.z, &mut self.radius];
-        columns.into_iter().chain(values).for_each(|column| pick(column, rows));
-        pick(&mut self.color, rows);
-        let texts = self.texts.iter_mut().chain([&mut self.materials]);
-        let codes = texts.map(|column| &mut column.codes).chain([&mut self.kinds.codes]);
-        codes.for_each(|codes| codes.pick(rows));
-        self.bonds.iter_mut().for_each(|bonds| bonds.pick(rows));
-        self.shapes.pick(rows);
-        self.trails.pick(rows);
+        self.change(RowChange::Pick(rows));
     }
 
     /// Frees the unused capacity of columns.
     pub fn shrink(&mut self) {
+        self.change(RowChange::Shrink);
+    }
+
+    /// Changes the rows of all columns.
+    fn change(&mut self, change: RowChange) {
         let values = self.numbers.iter_mut().map(|column| &mut column.values);
         let columns = [&mut self.x, &mut self.y, &mut self.z, &mut self.radius];
-        columns.into_iter().chain(values).for_each(Vec::shrink_to_fit);
-        self.color.shrink_to_fit();
-        self.shapes.shrink();
+        columns.into_iter().chain(values).for_each(|column| change.apply(column));
+        change.apply(&mut self.color);
+        let texts = self.texts.iter_mut().chain([&mut self.materials]);
+        let codes = texts.map(|column| &mut column.codes).chain([&mut self.kinds.codes]);
+        codes.for_each(|codes| codes.change(change));
+        self.bonds.iter_mut().for_each(|bonds| bonds.change(change));
+        self.shapes.change(change);
+        self.trails.change(change);
     }
 }

@@ -1,6 +1,6 @@
 //! Shapes of the particles of a frame, in columns: ellipsoids and their orientations.
 
-use crate::categories::{pick, retain};
+use crate::categories::RowChange;
 use glam::{DQuat, DVec3};
 
 /// Particles that are ellipsoids, in columns. Row `i` of every column belongs to particle `i`.
@@ -31,8 +31,13 @@ impl Shapes {
 
     /// Keeps the rows for which `keep` is true.
     pub fn retain(&mut self, keep: &[bool]) {
-        retain(&mut self.semi_axes, keep);
-        retain(&mut self.orientation, keep);
+        self.change(RowChange::Retain(keep));
+    }
+
+    /// Changes the rows.
+    pub(crate) fn change(&mut self, change: RowChange) {
+        change.apply(&mut self.semi_axes);
+        change.apply(&mut self.orientation);
     }
 
     /// Turns all particles.
@@ -47,15 +52,5 @@ impl Shapes {
     pub fn repeat(&mut self, count: usize) {
         self.semi_axes = self.semi_axes.repeat(count);
         self.orientation = self.orientation.repeat(count);
-    }
-
-    pub(crate) fn shrink(&mut self) {
-        self.semi_axes.shrink_to_fit();
-        self.orientation.shrink_to_fit();
-    }
-
-    pub(crate) fn pick(&mut self, rows: &[u32]) {
-        pick(&mut self.semi_axes, rows);
-        pick(&mut self.orientation, rows);
     }
 }

@@ -1,6 +1,6 @@
 //! Trails of the particles of a frame, in columns.
 
-use crate::categories::{pick, retain};
+use crate::categories::RowChange;
 use glam::DVec3;
 
 /// Earlier positions of particles, as vectors from where they are now. They don't cross the periodic cell: each is the nearest
@@ -25,7 +25,7 @@ impl Trails {
 
     /// Keeps the rows for which `keep` is true.
     pub fn retain(&mut self, keep: &[bool]) {
-        self.columns().for_each(|column| retain(column, keep));
+        self.change(RowChange::Retain(keep));
     }
 
     /// Repeats all rows, `count` times in total.
@@ -38,9 +38,9 @@ impl Trails {
         self.columns().flatten().for_each(|value| *value *= factor);
     }
 
-    /// Gathers rows: row `i` becomes the former row `rows[i]`.
-    pub(crate) fn pick(&mut self, rows: &[u32]) {
-        self.columns().for_each(|column| pick(column, rows));
+    /// Changes the rows.
+    pub(crate) fn change(&mut self, change: RowChange) {
+        self.columns().for_each(|column| change.apply(column));
     }
 
     fn columns(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
