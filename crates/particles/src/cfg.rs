@@ -105,10 +105,9 @@ fn component(key: &[u8]) -> Option<[usize; 2]> {
 
 impl FrameReader for Cfg {
     fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
-        if self.done {
+        if std::mem::replace(&mut self.done, true) {
             return Ok(None);
         }
-        self.done = true;
         let header = self.header()?;
         let vectors = header.vectors.map(|vector| vector * header.scale);
         let cell = Cell { origin: DVec3::ZERO, vectors, periodic: [true; 3] }.checked();
@@ -123,10 +122,7 @@ impl FrameReader for Cfg {
         for atom in 0..header.count {
             // In extended files, masses and symbols have lines of their own, before the atoms that they are of.
             let (line, skip) = loop {
-                let Some(line) = self.lines.next()? else {
-                    let message = format!("the file ends after {atom} of {} atoms", header.count);
-                    return Err(self.lines.ended(message).with_help("the file is cut off"));
-                };
+                let line = self.lines.row(atom, header.count, "atoms", "the file is cut off")?;
                 let mut fields = line.fields();
                 let (first, second) = (fields.next().unwrap_or_default(), fields.next());
                 match (header.entries, second) {

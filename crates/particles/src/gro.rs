@@ -67,11 +67,8 @@ impl Gro {
         let has_kind = schema.slots.contains(&Slot::Kind);
         let (mut width, mut has_velocities) = (None, false);
         for atom in 0..count {
-            let Some(line) = self.lines.next()? else {
-                let error =
-                    self.lines.ended(format!("the file ends after {atom} of {count} atoms"));
-                return Err(error.with_help("the file is cut off, or its second line wrong"));
-            };
+            let help = "the file is cut off, or its second line wrong";
+            let line = self.lines.row(atom, count, "atoms", help)?;
             let width = match width {
                 Some(width) => width,
                 None => *width.insert(self::width(&line)?),

@@ -64,6 +64,20 @@ impl Lines {
         }
     }
 
+    /// Returns the line of a row, or an error that the file ends before all `count` of `what` were read.
+    pub(crate) fn row(
+        &mut self,
+        row: u64,
+        count: u64,
+        what: &str,
+        help: &str,
+    ) -> Result<Line<'_>, FileError> {
+        let range = self.advance()?.ok_or_else(|| {
+            self.ended(format!("the file ends after {row} of {count} {what}")).with_help(help)
+        })?;
+        Ok(Line::new(&self.path, self.number, &self.buffer[range]))
+    }
+
     /// Moves past the next line, and returns its range in the buffer.
     fn advance(&mut self) -> Result<Option<Range<usize>>, FileError> {
         self.number += 1;

@@ -184,10 +184,7 @@ impl FrameReader for Molfile {
         };
         let mut builder = Builder::new(self.lines.path(), Format::Sdf, &schema);
         for atom in 0..count {
-            let Some(line) = self.lines.next()? else {
-                let message = format!("the file ends after {atom} of {count} atoms");
-                return Err(self.lines.ended(message).with_help("the file is cut off"));
-            };
+            let line = self.lines.row(atom, count, "atoms", "the file is cut off")?;
             builder.row(&line, fields(&line, plain.is_none())?.into_iter())?;
         }
         let bonds = if self.reads_bonds {

@@ -193,10 +193,7 @@ fn channel(scalar: Scalar, value: f64) -> f64 {
 fn text(lines: &mut Lines, vertex: &Element, builder: &mut Builder) -> Result<(), FileError> {
     let schema = builder.schema().clone();
     for row in 0..vertex.count {
-        let Some(line) = lines.next()? else {
-            let message = format!("the file ends after {row} of {} vertices", vertex.count);
-            return Err(lines.ended(message).with_help("the file is cut off"));
-        };
+        let line = lines.row(row, vertex.count, "vertices", "the file is cut off")?;
         let mut fields = Fields::blanks(line.bytes);
         for (slot, property) in schema.slots.iter().zip(&vertex.properties) {
             let Some(field) = fields.next() else {

@@ -66,10 +66,9 @@ fn fields<'l>(line: &Line<'l>) -> Result<[&'l [u8]; 10], FileError> {
 
 impl FrameReader for Pqr {
     fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
-        if self.done {
+        if std::mem::replace(&mut self.done, true) {
             return Ok(None);
         }
-        self.done = true;
         let schema = self.schema.clone().map_err(|message| self.lines.ended(message))?;
         let mut builder = Builder::new(self.lines.path(), Format::Pqr, &schema);
         builder.declare(&TEXTS, &["charge"]);

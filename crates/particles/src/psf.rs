@@ -136,20 +136,16 @@ fn kind(key: &str) -> Kind {
 
 impl FrameReader for Psf {
     fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
-        if self.done {
+        if std::mem::replace(&mut self.done, true) {
             return Ok(None);
         }
-        self.done = true;
         let schema = self.schema.clone().map_err(|message| self.lines.ended(message))?;
         let count = self.count()?;
         let mut builder = Builder::new(self.lines.path(), Format::Psf, &schema);
         builder.declare(&TEXTS, &["charge", "mass"]);
         let has_kind = schema.slots.contains(&Slot::Kind);
         for atom in 0..count {
-            let Some(line) = self.lines.next()? else {
-                let message = format!("the file ends after {atom} of {count} atoms");
-                return Err(self.lines.ended(message).with_help("the file is cut off"));
-            };
+            let line = self.lines.row(atom, count, "atoms", "the file is cut off")?;
             let fields = fields(&line)?;
             let positions: [&[u8]; 3] = [b"nan"; 3];
             builder.row(&line, fields.into_iter().chain(positions))?;

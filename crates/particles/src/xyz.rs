@@ -88,11 +88,8 @@ impl FrameReader for Xyz {
         let (comment, schema) = self.head(count)?;
         let mut builder = Builder::new(self.lines.path(), Format::Xyz, &schema);
         for atom in 0..count {
-            let Some(line) = self.lines.next()? else {
-                let message = format!("the file ends after {atom} of {count} atoms");
-                let error = self.lines.ended(message);
-                return Err(error.with_help("the file is cut off, or its first line wrong"));
-            };
+            let help = "the file is cut off, or its first line wrong";
+            let line = self.lines.row(atom, count, "atoms", help)?;
             builder.row(&line, line.fields())?;
         }
         let frame = builder.finish();

@@ -5,6 +5,13 @@ use std::io::{self, Read, Write};
 /// Bytes of the hash at the end.
 pub(crate) const HASH_BYTES: u64 = 32;
 
+/// Reads the next `N` bytes.
+pub(crate) fn array<const N: usize>(reader: &mut impl Read) -> io::Result<[u8; N]> {
+    let mut bytes = [0; N];
+    reader.read_exact(&mut bytes)?;
+    Ok(bytes)
+}
+
 /// Maximum number of bytes that are hashed at a time, so that they are still in a cache.
 const CHUNK: usize = 1 << 17;
 

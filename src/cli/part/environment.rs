@@ -30,37 +30,33 @@ enum Row {
     Unbounded { first: i64 },
 }
 
+use Row::{Array, Ranks, Unbounded};
+
+/// Returns the variables of a scheduler or launcher without a value that means that there is no task.
+const fn tasks(name: &'static str, task: &'static str, row: Row) -> TaskVariables {
+    TaskVariables { name, task, none: "", row }
+}
+
 /// Number of tasks of Slurm's array, whose numbers may have gaps.
 const SLURM_COUNT: &str = "SLURM_ARRAY_TASK_COUNT";
 
 const ARRAYS: [TaskVariables; 7] = [
-    TaskVariables {
-        name: "Slurm",
-        task: "SLURM_ARRAY_TASK_ID",
-        none: "",
-        row: Row::Array {
+    tasks(
+        "Slurm",
+        "SLURM_ARRAY_TASK_ID",
+        Array {
             first: Some("SLURM_ARRAY_TASK_MIN"),
             last: "SLURM_ARRAY_TASK_MAX",
             step: Some("SLURM_ARRAY_TASK_STEP"),
         },
-    },
-    TaskVariables {
-        name: "PBS",
-        task: "PBS_ARRAY_INDEX",
-        none: "",
-        row: Row::Unbounded { first: 1 },
-    },
-    TaskVariables {
-        name: "Torque",
-        task: "PBS_ARRAYID",
-        none: "",
-        row: Row::Unbounded { first: 1 },
-    },
+    ),
+    tasks("PBS", "PBS_ARRAY_INDEX", Unbounded { first: 1 }),
+    tasks("Torque", "PBS_ARRAYID", Unbounded { first: 1 }),
     TaskVariables {
         name: "Grid Engine",
         task: "SGE_TASK_ID",
         none: "undefined",
-        row: Row::Array {
+        row: Array {
             first: Some("SGE_TASK_FIRST"),
             last: "SGE_TASK_LAST",
             step: Some("SGE_TASK_STEPSIZE"),
@@ -70,55 +66,20 @@ const ARRAYS: [TaskVariables; 7] = [
         name: "LSF",
         task: "LSB_JOBINDEX",
         none: "0",
-        row: Row::Array { first: None, last: "LSB_JOBINDEX_END", step: Some("LSB_JOBINDEX_STEP") },
+        row: Array { first: None, last: "LSB_JOBINDEX_END", step: Some("LSB_JOBINDEX_STEP") },
     },
-    TaskVariables {
-        name: "AWS Batch",
-        task: "AWS_BATCH_JOB_ARRAY_INDEX",
-        none: "",
-        row: Row::Ranks { size: "AWS_BATCH_JOB_ARRAY_SIZE" },
-    },
-    TaskVariables {
-        name: "Kubernetes",
-        task: "JOB_COMPLETION_INDEX",
-        none: "",
-        row: Row::Unbounded { first: 0 },
-    },
+    tasks("AWS Batch", "AWS_BATCH_JOB_ARRAY_INDEX", Ranks { size: "AWS_BATCH_JOB_ARRAY_SIZE" }),
+    tasks("Kubernetes", "JOB_COMPLETION_INDEX", Unbounded { first: 0 }),
 ];
 
 /// `PMIx` sets no size, but Slurm, which uses it, does.
 const LAUNCHERS: [TaskVariables; 6] = [
-    TaskVariables {
-        name: "Open MPI",
-        task: "OMPI_COMM_WORLD_RANK",
-        none: "",
-        row: Row::Ranks { size: "OMPI_COMM_WORLD_SIZE" },
-    },
-    TaskVariables {
-        name: "MVAPICH",
-        task: "MV2_COMM_WORLD_RANK",
-        none: "",
-        row: Row::Ranks { size: "MV2_COMM_WORLD_SIZE" },
-    },
-    TaskVariables { name: "PMI", task: "PMI_RANK", none: "", row: Row::Ranks { size: "PMI_SIZE" } },
-    TaskVariables {
-        name: "PMIx",
-        task: "PMIX_RANK",
-        none: "",
-        row: Row::Ranks { size: "SLURM_NTASKS" },
-    },
-    TaskVariables {
-        name: "srun",
-        task: "SLURM_PROCID",
-        none: "",
-        row: Row::Ranks { size: "SLURM_NTASKS" },
-    },
-    TaskVariables {
-        name: "GNU parallel",
-        task: "PARALLEL_SEQ",
-        none: "",
-        row: Row::Unbounded { first: 1 },
-    },
+    tasks("Open MPI", "OMPI_COMM_WORLD_RANK", Ranks { size: "OMPI_COMM_WORLD_SIZE" }),
+    tasks("MVAPICH", "MV2_COMM_WORLD_RANK", Ranks { size: "MV2_COMM_WORLD_SIZE" }),
+    tasks("PMI", "PMI_RANK", Ranks { size: "PMI_SIZE" }),
+    tasks("PMIx", "PMIX_RANK", Ranks { size: "SLURM_NTASKS" }),
+    tasks("srun", "SLURM_PROCID", Ranks { size: "SLURM_NTASKS" }),
+    tasks("GNU parallel", "PARALLEL_SEQ", Unbounded { first: 1 }),
 ];
 
 /// Errors of `--part from-env`.
@@ -184,7 +145,7 @@ pub(super) fn part(
     if let Some(other) = arrays.find(|other| part.is_err() || other.part(variable, count) != part) {
         return Err(TaskError::SeveralArrays { first: array.task, second: other.task });
     }
-    if let Some(TaskVariables { task: rank, row: Row::Ranks { .. }, .. }) = launcher {
+    if let Some(TaskVariables { task: rank, row: Ranks { .. }, .. }) = launcher {
         let number = number(variable, rank)?.unwrap_or(0);
         if number > 0 {
             return Err(TaskError::Both { array: array.task, rank, number });
@@ -208,9 +169,9 @@ impl TaskVariables {
                 let first = row.first_of_counted();
                 (first, Some(first + i64::from(count) - 1), 1)
             }
-            (Row::Ranks { size }, None) => (0, read(size)?.map(|size| size - 1), 1),
-            (Row::Unbounded { first }, None) => (*first, None, 1),
-            (Row::Array { first, last, step }, None) => {
+            (Ranks { size }, None) => (0, read(size)?.map(|size| size - 1), 1),
+            (Unbounded { first }, None) => (*first, None, 1),
+            (Array { first, last, step }, None) => {
                 (optional(*first)?.unwrap_or(1), read(last)?, optional(*step)?.unwrap_or(1).max(1))
             }
         };

@@ -497,14 +497,7 @@ fn old_chunks(fields: &mut Fields, rank: usize) -> Option<Layout> {
     let dimensions = usize::from(fields.byte()?);
     let index = fields.address()?.map_or(Index::Empty, Index::Tree);
     let lengths = (0..rank).map(|_| fields.number(4)).collect::<Option<Vec<u64>>>()?;
-    let fits = rank > 0 && dimensions == rank + 1;
-    fits.then_some(Layout::Chunked(Chunks {
-        index,
-        lengths,
-        most: Vec::new(),
-        bytes: 0,
-        is_filtered: false,
-    }))
+    chunks(Chunks { index, lengths, is_filtered: false, most: Vec::new(), bytes: 0 }, dimensions)
 }
 
 /// Returns the chunks of a layout of version 4 or 5.
@@ -534,14 +527,13 @@ fn new_chunks(fields: &mut Fields, rank: usize, is_filtered: bool) -> Option<Lay
         (5, Some(at)) => Index::NewTree(at),
         _ => return None,
     };
-    let fits = rank > 0 && dimensions == rank + 1;
-    fits.then_some(Layout::Chunked(Chunks {
-        index,
-        lengths,
-        most: Vec::new(),
-        bytes: 0,
-        is_filtered,
-    }))
+    chunks(Chunks { index, lengths, is_filtered, most: Vec::new(), bytes: 0 }, dimensions)
+}
+
+/// Returns a layout of chunks, if it has one more dimension than they have lengths: that of a value.
+fn chunks(chunks: Chunks, dimensions: usize) -> Option<Layout> {
+    let rank = chunks.lengths.len();
+    (rank > 0 && dimensions == rank + 1).then_some(Layout::Chunked(chunks))
 }
 
 /// Returns the name, the type and the bytes of an attribute.

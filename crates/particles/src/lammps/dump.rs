@@ -178,11 +178,8 @@ impl FrameReader for Dump {
             return Err(self.lines.ended("a frame without ITEM: NUMBER OF ATOMS"));
         };
         for atom in 0..count {
-            let Some(line) = self.lines.next()? else {
-                let error =
-                    self.lines.ended(format!("the file ends after {atom} of {count} atoms"));
-                return Err(error.with_help("the file is cut off; choose an earlier frame"));
-            };
+            let help = "the file is cut off; choose an earlier frame";
+            let line = self.lines.row(atom, count, "atoms", help)?;
             builder.row(&line, line.fields())?;
         }
         let mut frame = builder.finish();

@@ -4,7 +4,7 @@ use super::blocks::{MAX_RATIO, TILES, unpack};
 use super::{FORMAT, MAGIC, Origin, PROGRAM};
 use crate::memory::{self, Shortage};
 use crate::render::{RenderHeader, ResumableRender, Status};
-use crate::sealed::HASH_BYTES;
+use crate::sealed::{HASH_BYTES, array};
 use std::fs::File;
 use std::io::{self, BufReader, ErrorKind, Read, Seek};
 use std::path::{Path, PathBuf};
@@ -47,13 +47,19 @@ pub enum CheckpointError {
 /// The file cannot be read, or is not a checkpoint of this version of the program; bytes are missing or
 /// changed; or there is not enough memory.
 pub fn read(path: &Path) -> Result<(Origin, ResumableRender), CheckpointError> {
+    let (reader, length) = open(path)?;
+    read_from(reader, length).map_err(|fault| fault.of(path))
+}
+
+/// Opens a file, and returns its length in bytes.
+fn open(path: &Path) -> Result<(BufReader<File>, u64), CheckpointError> {
     let failed = |error| CheckpointError::Read(path.to_owned(), error);
     let file = File::open(path).map_err(failed)?;
     let length = file.metadata().map_err(failed)?;
     if !length.is_file() {
         return Err(CheckpointError::Foreign(path.to_owned()));
     }
-    read_from(BufReader::new(file), length.len()).map_err(|fault| fault.of(path))
+    Ok((BufReader::new(file), length.len()))
 }
 
 /// Reads the progress of a checkpoint of [`super::write()`], without its sums.
@@ -61,18 +67,13 @@ pub fn read(path: &Path) -> Result<(Origin, ResumableRender), CheckpointError> {
 /// # Errors
 /// Those of [`read`], except for memory.
 pub fn inspect(path: &Path) -> Result<(Origin, Status), CheckpointError> {
-    let failed = |error| CheckpointError::Read(path.to_owned(), error);
-    let file = File::open(path).map_err(failed)?;
-    let length = file.metadata().map_err(failed)?;
-    if !length.is_file() {
-        return Err(CheckpointError::Foreign(path.to_owned()));
-    }
-    let read = |mut reader: BufReader<File>| {
-        let content = verify(&mut reader, length.len())?;
-        let (origin, header) = read_header(&mut reader.take(content), content)?;
+    let (mut reader, length) = open(path)?;
+    let mut read = || {
+        let content = verify(&mut reader, length)?;
+        let (origin, header) = read_header(&mut reader.by_ref().take(content), content)?;
         Ok((origin, header.status()))
     };
-    read(BufReader::new(file)).map_err(|fault: ReadError| fault.of(path))
+    read().map_err(|fault: ReadError| fault.of(path))
 }
 
 /// Reasons why bytes are not a valid checkpoint.
@@ -188,12 +189,6 @@ fn bytes(reader: &mut impl Read, count: u64, length: u64) -> Result<Vec<u8>, Rea
         return Err(ReadError::Damaged("its end is missing"));
     }
     let mut bytes = vec![0; count as usize];
-    reader.read_exact(&mut bytes)?;
-    Ok(bytes)
-}
-
-fn array<const N: usize>(reader: &mut impl Read) -> io::Result<[u8; N]> {
-    let mut bytes = [0; N];
     reader.read_exact(&mut bytes)?;
     Ok(bytes)
 }

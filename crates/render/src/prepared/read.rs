@@ -7,7 +7,7 @@ use crate::bvh::{Bvh, NodeRow};
 use crate::image::Image;
 use crate::memory::{self, Shortage};
 use crate::scene::{Environment, EnvironmentMap, Rgb, Scene};
-use crate::sealed::{HASH_BYTES, HashingReader};
+use crate::sealed::{HASH_BYTES, HashingReader, array};
 use crate::shade::Materials;
 use crate::spheres::{LEAF, SphereBlock, Spheres};
 use crate::world::{Appearance, CameraVisible, Colors, Column, Parts};
@@ -290,10 +290,4 @@ fn column<T: Pod>(file: &mut impl Read, count: u64) -> io::Result<Vec<T>> {
     let mut rows = vec![T::zeroed(); count as usize];
     file.read_exact(cast_slice_mut(&mut rows))?;
     Ok(rows)
-}
-
-fn array<const N: usize>(reader: &mut impl Read) -> io::Result<[u8; N]> {
-    let mut bytes = [0; N];
-    reader.read_exact(&mut bytes)?;
-    Ok(bytes)
 }
