@@ -13,6 +13,7 @@ use crate::cli::output;
 use crate::cli::render::Job;
 use glam::DVec2;
 use spherule_render::atomic::write_atomically;
+use spherule_render::image::{Compression, encode_codes};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -204,9 +205,9 @@ impl Headless {
     fn capture(&mut self, path: &Path) -> Result<(), Failure> {
         self.session.canvas.draw(&self.session.viewer);
         let canvas = &self.session.canvas;
-        let file =
-            spherule_render::drawing::encode(&canvas.codes(), (canvas.width, canvas.height))?;
-        write_atomically(path, |writer| writer.write_all(&file))
+        let size = (canvas.width, canvas.height);
+        encode_codes(&canvas.codes(), size, Compression::default())
+            .and_then(|file| write_atomically(path, |writer| writer.write_all(&file)))
             .map_err(|error| Failure::Write(path.to_owned(), error))
     }
 }

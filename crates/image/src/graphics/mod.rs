@@ -12,6 +12,7 @@ mod svg;
 
 pub use font::{CAP_HEIGHT, X_HEIGHT, text_width};
 pub use page::{Format, Page, PageError};
+pub use svg::base64;
 
 use crate::color::Rgb;
 use glam::DVec2;

@@ -95,7 +95,8 @@ fn escaped(text: &str) -> String {
     text.chars().map(escape).collect()
 }
 
-fn base64(bytes: &[u8]) -> String {
+/// Returns bytes in Base64, with padding.
+pub fn base64(bytes: &[u8]) -> String {
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for chunk in bytes.chunks(3) {
         let byte = |index: usize| u32::from(chunk.get(index).copied().unwrap_or(0));

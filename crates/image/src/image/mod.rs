@@ -32,6 +32,7 @@ pub use self::format::Format;
 pub(crate) use self::format::suffix;
 pub use self::metadata::{Metadata, read_metadata};
 pub use self::options::{Depth, PpmEncoding, QUALITY, WriteOptions};
+pub use self::png::{Compression, encode_codes};
 
 use crate::{atomic, memory};
 use std::path::Path;

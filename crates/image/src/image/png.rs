@@ -4,12 +4,13 @@ use super::{
     Depth, Image, Metadata, WriteOptions, codes, deflate,
     format::{claimed_area, damaged},
 };
+pub use ::png::Compression;
 use ::png::{
     BitDepth, ColorType, Decoder, Encoder, EncodingError, Info, Reader, SrgbRenderingIntent,
     Transformations, chunk,
 };
 use rayon::prelude::*;
-use std::io::Cursor;
+use std::io::{self, Cursor};
 
 /// Maximum compression ratio of Deflate (its longest match is 258 bytes in 2 bits).
 const MAXIMUM_DEFLATE_RATIO: usize = 1032;
@@ -106,6 +107,24 @@ pub(super) fn encode(
     let mut bytes = Vec::new();
     write(&mut bytes, info, &options.metadata, &stream).map_err(|error| error.to_string())?;
     Ok(bytes)
+}
+
+/// Returns the content of a PNG file of sRGB codes, three bytes per pixel, row by row.
+///
+/// # Errors
+/// The number of codes is not that of the size.
+pub fn encode_codes(
+    codes: &[u8],
+    size: (u32, u32),
+    compression: Compression,
+) -> io::Result<Vec<u8>> {
+    let mut file = Vec::new();
+    let mut encoder = Encoder::new(&mut file, size.0, size.1);
+    encoder.set_color(ColorType::Rgb);
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_compression(compression);
+    encoder.write_header()?.write_image_data(codes)?;
+    Ok(file)
 }
 
 /// Numbers of bytes in samples.

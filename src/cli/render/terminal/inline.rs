@@ -1,6 +1,8 @@
 //! Inline PNG images, for Kitty and iTerm.
 
 use super::Codes;
+use spherule_render::graphics::base64;
+use spherule_render::image::{Compression, encode_codes};
 
 /// Maximum number of bytes of an escape sequence of Kitty; a multiple of 4.
 const CHUNK: usize = 4096;
@@ -44,33 +46,8 @@ pub(super) fn iterm(codes: &Codes, [columns, rows]: [u32; 2]) -> Vec<u8> {
 
 /// Encodes the image as PNG; empty if it has no pixels.
 fn png(codes: &Codes) -> Vec<u8> {
-    let mut file = Vec::new();
-    let mut encoder = png::Encoder::new(&mut file, codes.width, codes.height);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::Fast);
-    let written = encoder
-        .write_header()
-        .and_then(|mut writer| writer.write_image_data(codes.pixels.as_flattened()));
-    if written.is_err() {
-        file.clear();
-    }
-    file
-}
-
-/// Returns bytes in base 64, with padding (RFC 4648, section 4).
-fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for group in bytes.chunks(3) {
-        let byte = |at: usize| u32::from(group.get(at).copied().unwrap_or(0));
-        let word = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for digit in 0..4 {
-            let value = (word >> (18 - 6 * digit)) & 63;
-            text.push(if digit <= group.len() { DIGITS[value as usize] as char } else { '=' });
-        }
-    }
-    text
+    let size = (codes.width, codes.height);
+    encode_codes(codes.pixels.as_flattened(), size, Compression::Fast).unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -105,16 +82,6 @@ mod tests {
         let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
         reader.next_frame(&mut pixels).expect("pixels");
         pixels
-    }
-
-    #[test]
-    fn bytes_in_base_64_are_those_of_the_standard() {
-        let cases =
-            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")];
-        for (bytes, text) in cases {
-            assert_eq!(base64(bytes.as_bytes()), text);
-            assert_eq!(decoded(text), bytes.as_bytes());
-        }
     }
 
     #[test]

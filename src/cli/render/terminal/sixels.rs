@@ -16,9 +16,9 @@ const BAND: usize = 6;
 
 /// Returns the escape sequence that draws an image at the cursor.
 pub(super) fn text(codes: &Codes) -> Vec<u8> {
-    let (width, colors) = (codes.width as usize, palette());
+    let width = codes.width as usize;
     let mut text = format!("\x1bP0;1q\"1;1;{};{}", codes.width, codes.height);
-    for (number, color) in colors.iter().enumerate() {
+    for (number, color) in palette().enumerate() {
         let [red, green, blue] = color.map(|level| level * 100 / 255);
         // Writing into a string does not fail.
         let _ = write!(text, "#{number};2;{red};{green};{blue}");
@@ -64,14 +64,11 @@ fn row(text: &mut String, sixels: impl Iterator<Item = u8>) {
 }
 
 /// Returns the colors of the palette.
-fn palette() -> Vec<[u32; 3]> {
+fn palette() -> impl Iterator<Item = [u32; 3]> {
     let [reds, greens, blues] = LEVELS;
-    let level = |at: u32, levels: u32| at * 255 / (levels - 1);
-    let colors = (0..reds).flat_map(|red| {
-        (0..greens).flat_map(move |green| (0..blues).map(move |blue| [red, green, blue]))
-    });
-    let [a, b, c] = LEVELS;
-    colors.map(|[red, green, blue]| [level(red, a), level(green, b), level(blue, c)]).collect()
+    let level = |at: u32, levels: u32| at % levels * 255 / (levels - 1);
+    (0..reds * greens * blues)
+        .map(move |i| [level(i / blues / greens, reds), level(i / blues, greens), level(i, blues)])
 }
 
 /// Returns the color of the palette for a pixel at a place.
