@@ -6,7 +6,6 @@ use clap::error::ErrorKind;
 use memchr::{memchr, memrchr};
 use spherule_measure::bench::BenchError;
 use spherule_render::checkpoint::{CheckpointError, LockError};
-use spherule_render::drawing::DrawingError;
 use spherule_render::graphics::PageError;
 use spherule_render::image::{CompareError, ImageError};
 use spherule_render::prepared::{PrepareError, PreparedError};
@@ -76,8 +75,6 @@ pub(super) enum Failure {
     CheckpointExists(PathBuf),
     #[error("{}: cannot resume: {}", .0.display(), .1)]
     Resume(PathBuf, String),
-    #[error("{0}")]
-    Drawing(#[from] DrawingError),
     #[error("{0}")]
     Page(#[from] PageError),
     #[error("{0}")]

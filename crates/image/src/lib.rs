@@ -11,8 +11,6 @@ use spherule_particles::internals::{memory, suggest};
 pub mod color;
 
 #[cfg(feature = "drawing")]
-pub mod drawing;
-#[cfg(feature = "drawing")]
 pub mod graphics;
 
 pub mod atomic;

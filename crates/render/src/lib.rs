@@ -25,9 +25,9 @@ pub use spherule_core::internals::{
 pub use spherule_particles::internals::{memory, suggest};
 
 // What users write, and pictures.
-pub use spherule_image::{Image, atomic, color, image};
 #[cfg(feature = "drawing")]
-pub use spherule_image::{drawing, graphics};
+pub use spherule_image::graphics;
+pub use spherule_image::{Image, atomic, color, image};
 pub use spherule_scene::{Scene, scene, settings};
 
 // Vocabulary: knows nothing of scenes.

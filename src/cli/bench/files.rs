@@ -1,9 +1,10 @@
 //! The output folder of reports.
 
 use crate::cli::failure::Failure;
-use spherule_measure::report::draw::{png, svg};
+use spherule_measure::report::draw::draw;
 use spherule_measure::report::{Machine, Report, html};
 use spherule_render::atomic::{check_destination, write_atomically};
+use spherule_render::graphics::Format;
 use std::ffi::OsStr;
 use std::fmt;
 use std::fs;
@@ -100,8 +101,8 @@ impl Folder {
                 self.file(&table.name, "csv", table.csv().as_bytes())?;
             }
             for plot in &report.plots {
-                self.file(&plot.name, "svg", svg(plot)?.as_bytes())?;
-                self.file(&plot.name, "png", &png(plot)?)?;
+                self.file(&plot.name, "svg", &draw(plot, Format::Svg)?)?;
+                self.file(&plot.name, "png", &draw(plot, Format::Png)?)?;
             }
         }
         self.file(page, "html", html::page(machine, reports)?.as_bytes())

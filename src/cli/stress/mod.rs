@@ -14,7 +14,7 @@ use serde::Serialize;
 use spherule_measure::report::draw::draw;
 use spherule_measure::stress::{self, Form, Options, REGIMES, Regime, Report};
 use spherule_render::atomic::{check_destination, write_atomically};
-use spherule_render::drawing::Format;
+use spherule_render::graphics::Format;
 use spherule_render::render::Progress;
 use std::io;
 use std::path::Path;
@@ -65,7 +65,7 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
 }
 
 fn plot_format(path: &Path) -> Result<Format, Failure> {
-    Format::of_suffix(path).ok_or_else(|| {
+    Format::of_suffix(path).filter(|format| *format != Format::Pdf).ok_or_else(|| {
         let name = path.display();
         let message = format!("--plot {name}: use a name that ends in .png or .svg");
         Failure::usage("stress", message)

@@ -38,7 +38,7 @@ mod tests {
     use super::*;
     use spherule_measure::report::draw::draw;
     use spherule_measure::stress::{Options, REGIMES, run};
-    use spherule_render::drawing::Format;
+    use spherule_render::graphics::Format;
 
     #[test]
     fn both_pictures_show_every_regime() {

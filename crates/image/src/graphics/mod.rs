@@ -15,8 +15,13 @@ pub use page::{Format, Page, PageError};
 pub use svg::base64;
 
 use crate::color::Rgb;
+use crate::elementary::{cos, sin};
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// Number of corners of a disc.
+const DISC: u32 = 48;
 
 /// Shapes in the order in which they are drawn.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -103,6 +108,19 @@ impl Drawing {
         let Some(along) = (to - from).try_normalize() else { return };
         let side = along.perp() * (width / 2.0);
         self.polygon(&[from + side, to + side, to - side, from - side], color);
+    }
+
+    /// Adds a disc.
+    pub fn disc(&mut self, center: DVec2, radius: f64, color: Rgb) {
+        let angle = |index: u32| TAU * f64::from(index) / f64::from(DISC);
+        let corner = |index| center + DVec2::new(cos(angle(index)), sin(angle(index))) * radius;
+        self.polygon(&(0..DISC).map(corner).collect::<Vec<_>>(), color);
+    }
+
+    /// Adds straight lines of this width from point to point, with flat ends and round corners.
+    pub fn path(&mut self, points: &[DVec2], width: f64, color: Rgb) {
+        points.windows(2).for_each(|ends| self.line([ends[0], ends[1]], width, color));
+        points.windows(3).for_each(|points| self.disc(points[1], width / 2.0, color));
     }
 
     /// Adds a line of text.

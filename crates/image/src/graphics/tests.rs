@@ -39,6 +39,25 @@ fn shapes_cover_their_area_of_each_pixel() {
 }
 
 #[test]
+fn formats_follow_from_the_name() {
+    let of = |name: &str| Format::of_suffix(std::path::Path::new(name));
+    assert_eq!((of("a.png"), of("b/A.SVG")), (Some(Format::Png), Some(Format::Svg)));
+    assert_eq!((of("a.pdf"), of("png")), (Some(Format::Pdf), None));
+}
+
+#[test]
+fn corners_of_paths_are_round() {
+    let [a, b, c] = [DVec2::new(4.0, 16.0), DVec2::new(16.0, 16.0), DVec2::new(16.0, 4.0)];
+    let mut drawing = Drawing::default();
+    drawing.path(&[a, b, c], 8.0, INK);
+    let mut image = white(24, 24);
+    drawing.draw_over(&mut image);
+    // Two halves of the lines are in the other line, and a quarter of the disc is in neither.
+    let expected = 2.0 * 12.0 * 8.0 - 16.0 + std::f32::consts::PI * 4.0;
+    assert!((darkness(&image) - expected).abs() < 0.3, "{}", darkness(&image));
+}
+
+#[test]
 fn translucent_shapes_blend() {
     let mut drawing = Drawing::default();
     drawing.translucent_rectangle(DVec2::ZERO, DVec2::splat(2.0), Rgb::X, 0.75);

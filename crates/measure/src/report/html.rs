@@ -1,8 +1,8 @@
 //! A self-contained HTML page of all reports, without scripts and external resources.
 
-use super::draw::svg;
+use super::draw::draw;
 use super::{Machine, Report, Table};
-use spherule_render::drawing::DrawingError;
+use spherule_render::graphics::{Format, PageError};
 use std::fmt::Write;
 
 const HEAD: &str = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
@@ -29,7 +29,7 @@ const LEFT: &str = " class=\"left\"";
 ///
 /// # Errors
 /// A plot cannot be drawn.
-pub fn page(machine: &Machine, reports: &[Report]) -> Result<String, DrawingError> {
+pub fn page(machine: &Machine, reports: &[Report]) -> Result<String, PageError> {
     let mut page = HEAD.to_owned();
     page += "<h1>Spherule, measured</h1>\n";
     page += &pairs(&machine.facts);
@@ -51,14 +51,14 @@ pub fn is_page(content: &[u8]) -> bool {
     start.starts_with("<!DOCTYPE html>") && start.contains("<title>Spherule, measured</title>")
 }
 
-fn section(report: &Report) -> Result<String, DrawingError> {
+fn section(report: &Report) -> Result<String, PageError> {
     let [name, title, about] = [&report.name, &report.title, &report.about].map(|x| escape(x));
     // Writing to a string cannot fail.
     let mut text = format!("<h2 id=\"{name}\">{title}</h2>\n<p>{about}</p>\n");
     let _ = writeln!(text, "<p class=\"note\"><code>spherule bench {name}</code></p>");
     text += &pairs(&report.settings);
     for plot in &report.plots {
-        text += &svg(plot)?;
+        text += &String::from_utf8_lossy(&draw(plot, Format::Svg)?);
     }
     for table in &report.tables {
         let _ = write!(text, "<h3>{}</h3>\n{}", escape(&table.title), grid(table));
@@ -144,7 +144,8 @@ mod tests {
         for words in ["A &lt; B", "1 &amp; 2", "what is &lt;x&gt;", "<svg", "</svg>", "processor"] {
             assert!(page.contains(words), "{words}");
         }
-        let outside = page.replace("http://www.w3.org/2000/svg", "");
+        let namespaces = ["http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"];
+        let outside = namespaces.iter().fold(page, |page, name| page.replace(name, ""));
         for reference in ["http:", "https:", "src=", "url(", "<script", "<link"] {
             assert!(!outside.contains(reference), "{reference}");
         }

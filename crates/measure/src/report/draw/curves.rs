@@ -1,10 +1,11 @@
 //! X-y plots, with the legend at the right edge.
 
-use super::canvas::{Align, Canvas, FAINT, FONT_SIZE, MARGIN, Position, WIDTH, color, width};
+use super::canvas::{
+    Align, Canvas, FONT_SIZE, MARGIN, NOTE_SIZE, Position, WIDTH, color, faint, ink, width,
+};
 use super::legend;
 use super::scale::AxisScale;
 use crate::report::{Line, Plot, Series, Spread};
-use spherule_render::drawing::INK;
 
 // Positions and lengths in pixels.
 /// Height of the canvas.
@@ -36,10 +37,10 @@ impl Plane {
 }
 
 pub(super) fn layout(plot: &Plot) -> Canvas {
-    let mut canvas = Canvas { height: HEIGHT, shapes: Vec::new() };
+    let mut canvas = Canvas { height: HEIGHT, ..Canvas::default() };
     canvas.heading(&plot.title, &plot.about);
     let points = || plot.series.iter().flat_map(|series| &series.points);
-    let names = plot.series.iter().map(|series| width(&series.name, FONT_SIZE)).fold(0.0, f64::max);
+    let names = plot.series.iter().map(|series| width(&series.name)).fold(0.0, f64::max);
     let values = points().flat_map(|point| [point.value.least, point.value.greatest]);
     let plane = Plane {
         place: AxisScale::new(&plot.place, points().map(|point| point.place)),
@@ -52,25 +53,25 @@ pub(super) fn layout(plot: &Plot) -> Canvas {
         draw(&mut canvas, index, series, &plane);
     }
     legend_entries(&mut canvas, plot, &plane);
-    canvas.text(plot.note.as_str(), (MARGIN, HEIGHT - 30.0), 18.0, Align::Left);
+    canvas.text(plot.note.as_str(), (MARGIN, HEIGHT - 30.0), NOTE_SIZE, Align::Start);
     canvas
 }
 
 fn axes(canvas: &mut Canvas, plot: &Plot, plane: &Plane) {
     for (place, label) in plane.place.ticks() {
         let x = plane.x(place);
-        canvas.path([(x, TOP), (x, BOTTOM)], FAINT, 1.0);
-        canvas.text(label, (x, BOTTOM + 24.0), FONT_SIZE, Align::Center);
+        canvas.path(&[(x, TOP), (x, BOTTOM)], faint(), 1.0);
+        canvas.text(label, (x, BOTTOM + 24.0), FONT_SIZE, Align::Middle);
     }
     for (value, label) in plane.value.ticks() {
         let y = plane.y(value);
-        canvas.path([(plane.left, y), (plane.right, y)], FAINT, 1.0);
-        canvas.text(label, (plane.left - 14.0, y), FONT_SIZE, Align::Right);
+        canvas.path(&[(plane.left, y), (plane.right, y)], faint(), 1.0);
+        canvas.text(label, (plane.left - 14.0, y), FONT_SIZE, Align::End);
     }
-    canvas.path([(plane.left, TOP), (plane.left, BOTTOM), (plane.right, BOTTOM)], INK, 2.0);
+    canvas.path(&[(plane.left, TOP), (plane.left, BOTTOM), (plane.right, BOTTOM)], ink(), 2.0);
     let middle = f64::midpoint(plane.left, plane.right);
-    canvas.text(plot.place.heading(), (middle, BOTTOM + 60.0), FONT_SIZE, Align::Center);
-    canvas.text(plot.value.heading(), (MARGIN, TOP - 34.0), FONT_SIZE, Align::Left);
+    canvas.text(plot.place.heading(), (middle, BOTTOM + 60.0), FONT_SIZE, Align::Middle);
+    canvas.text(plot.value.heading(), (MARGIN, TOP - 34.0), FONT_SIZE, Align::Start);
 }
 
 fn draw(canvas: &mut Canvas, index: usize, series: &Series, plane: &Plane) {
@@ -80,8 +81,8 @@ fn draw(canvas: &mut Canvas, index: usize, series: &Series, plane: &Plane) {
     let at: Vec<Position> =
         points.iter().map(|point| (plane.x(point.place), plane.y(point.value.median))).collect();
     match series.line {
-        Line::Solid if at.len() > 1 => canvas.path(at.clone(), color(number), 3.0),
-        Line::Dashed if at.len() > 1 => canvas.dashes(at.clone(), color(number)),
+        Line::Solid if at.len() > 1 => canvas.path(&at, color(number), 3.0),
+        Line::Dashed if at.len() > 1 => canvas.dashes(&at, color(number)),
         _ => {}
     }
     for (point, &at) in points.iter().zip(&at) {
@@ -102,9 +103,9 @@ fn bar(canvas: &mut Canvas, number: usize, x: f64, value: Spread, plane: &Plane)
     if low - high <= 2.0 {
         return;
     }
-    canvas.path([(x, low), (x, high)], color(number), 2.0);
+    canvas.path(&[(x, low), (x, high)], color(number), 2.0);
     for y in [low, high] {
-        canvas.path([(x - CAP, y), (x + CAP, y)], color(number), 2.0);
+        canvas.path(&[(x - CAP, y), (x + CAP, y)], color(number), 2.0);
     }
 }
 

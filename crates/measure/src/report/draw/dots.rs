@@ -1,6 +1,6 @@
 //! Dot plots: a row for each name, with markers at the values.
 
-use super::canvas::{Align, Canvas, FAINT, FONT_SIZE, MARGIN, WIDTH, color, width};
+use super::canvas::{Align, Canvas, FONT_SIZE, MARGIN, NOTE_SIZE, WIDTH, color, faint, width};
 use super::legend;
 use super::scale::AxisScale;
 use crate::report::{Plot, Point, Series};
@@ -36,7 +36,7 @@ pub(super) fn layout(plot: &Plot, names: &[String]) -> Canvas {
         legend::entry(&mut canvas, i, series, at, size(i, plot));
     }
     let top = 150.0 + 34.0 * lines as f64;
-    let longest = names.iter().map(|name| width(name, FONT_SIZE)).fold(0.0, f64::max);
+    let longest = names.iter().map(|name| width(name)).fold(0.0, f64::max);
     let left = (MARGIN + longest + 30.0).min(NAMES);
     let gap = if plot.value.zero.is_some() { ZERO_GAP } else { 20.0 };
     let step = if has_bars(plot) { STEP } else { 0.0 };
@@ -57,7 +57,7 @@ pub(super) fn layout(plot: &Plot, names: &[String]) -> Canvas {
     }
     canvas.height = layout.bottom + if plot.note.is_empty() { 90.0 } else { 130.0 };
     if !plot.note.is_empty() {
-        canvas.text(plot.note.as_str(), (MARGIN, layout.bottom + 100.0), 18.0, Align::Left);
+        canvas.text(plot.note.as_str(), (MARGIN, layout.bottom + 100.0), NOTE_SIZE, Align::Start);
     }
     canvas
 }
@@ -101,12 +101,12 @@ fn axis(canvas: &mut Canvas, plot: &Plot, scale: &AxisScale, layout: &Layout) {
     let zero = plot.value.zero.as_ref().map(|name| (layout.zero(), name.clone()));
     let ticks = scale.ticks().into_iter().map(|(value, label)| (layout.x(scale, value), label));
     for (x, label) in zero.into_iter().chain(ticks) {
-        canvas.path([(x, layout.top), (x, layout.bottom)], FAINT, 2.0);
-        canvas.text(label.as_str(), (x, layout.top - 20.0), FONT_SIZE, Align::Center);
-        canvas.text(label, (x, layout.bottom + 24.0), FONT_SIZE, Align::Center);
+        canvas.path(&[(x, layout.top), (x, layout.bottom)], faint(), 2.0);
+        canvas.text(label.as_str(), (x, layout.top - 20.0), FONT_SIZE, Align::Middle);
+        canvas.text(label, (x, layout.bottom + 24.0), FONT_SIZE, Align::Middle);
     }
     let middle = f64::midpoint(layout.axis[0], layout.axis[1]);
-    canvas.text(plot.value.heading(), (middle, layout.bottom + 58.0), FONT_SIZE, Align::Center);
+    canvas.text(plot.value.heading(), (middle, layout.bottom + 58.0), FONT_SIZE, Align::Middle);
 }
 
 fn row(
@@ -120,11 +120,11 @@ fn row(
     let y = layout.top + layout.line * (line as f64 + 0.5);
     if layout.step > 0.0 && line > 0 {
         let above = y - layout.line / 2.0;
-        canvas.path([(layout.sides[0], above), (layout.sides[1], above)], FAINT, 1.0);
+        canvas.path(&[(layout.sides[0], above), (layout.sides[1], above)], faint(), 1.0);
     }
-    canvas.text(name, (layout.sides[0] - 20.0, y), FONT_SIZE, Align::Right);
+    canvas.text(name, (layout.sides[0] - 20.0, y), FONT_SIZE, Align::End);
     if layout.step == 0.0 {
-        canvas.path([(layout.sides[0], y), (layout.sides[1], y)], FAINT, 1.0);
+        canvas.path(&[(layout.sides[0], y), (layout.sides[1], y)], faint(), 1.0);
     }
     let middle = (plot.series.len() as f64 - 1.0) / 2.0;
     let y = |index: usize| y + layout.step * (index as f64 - middle);
@@ -140,7 +140,7 @@ fn row(
         let y = y(index);
         let [low, high] = [value.least, value.greatest].map(|value| layout.x(scale, value));
         if high - low > 1.0 {
-            canvas.path([(low, y), (high, y)], color(number), 3.0);
+            canvas.path(&[(low, y), (high, y)], color(number), 3.0);
         }
     }
     for &(index, number, value) in &marks {

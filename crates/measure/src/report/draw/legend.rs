@@ -14,16 +14,16 @@ pub(super) fn number(series: &Series, index: usize) -> usize {
 /// Draws an entry: a sample centered at `at`, and the name to its right.
 pub(super) fn entry(canvas: &mut Canvas, index: usize, series: &Series, at: Position, radius: f64) {
     let number = number(series, index);
-    let ends = vec![(at.0 - 16.0, at.1), (at.0 + 16.0, at.1)];
+    let ends = [(at.0 - 16.0, at.1), (at.0 + 16.0, at.1)];
     match series.line {
         Line::None => {}
-        Line::Solid => canvas.path(ends, color(number), 3.0),
-        Line::Dashed => canvas.dashes(ends, color(number)),
+        Line::Solid => canvas.path(&ends, color(number), 3.0),
+        Line::Dashed => canvas.dashes(&ends, color(number)),
     }
     if series.marked {
         canvas.mark(number, at, radius);
     }
-    canvas.text(series.name.as_str(), (at.0 + SAMPLE, at.1), FONT_SIZE, Align::Left);
+    canvas.text(series.name.as_str(), (at.0 + SAMPLE, at.1), FONT_SIZE, Align::Start);
 }
 
 /// Arranges entries in lines between `left` and the right edge, from `top` down. Returns their
@@ -33,7 +33,7 @@ pub(super) fn rows(series: &[Series], left: f64, top: f64) -> (Vec<Position>, us
     let (mut x, mut line) = (left, 0);
     let mut places = Vec::new();
     for series in series {
-        let room = SAMPLE + width(&series.name, FONT_SIZE) + 50.0;
+        let room = SAMPLE + width(&series.name) + 50.0;
         if x > left && x + room > WIDTH {
             (x, line) = (left, line + 1);
         }

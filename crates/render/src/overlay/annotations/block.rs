@@ -6,16 +6,12 @@ use crate::elementary::{log10, power_of_ten};
 use crate::graphics::{Align, CAP_HEIGHT, Drawing, Text, text_width};
 use crate::scene::{Anchor, ColorLegend, Label, ScaleBar};
 use glam::DVec2;
-use std::f64::consts::TAU;
 
 /// Maximum length of a scale bar of automatic length, as a fraction of the picture's width.
 const BAR_SHARE: f64 = 0.25;
 
 /// Distance of the baselines of two lines, in ems.
 const LINE: f64 = 1.45;
-
-/// Number of corners of a disc.
-const DISC: u32 = 48;
 
 /// A drawing with its size in pixels: nothing extends beyond it.
 #[derive(Clone, Debug)]
@@ -24,16 +20,6 @@ pub struct Block {
     pub drawing: Drawing,
     /// Width and height.
     pub size: DVec2,
-}
-
-/// Adds a disc.
-pub(super) fn disc(drawing: &mut Drawing, center: DVec2, radius: f64, color: Rgb) {
-    let corner = |index: u32| {
-        let angle = TAU * f64::from(index) / f64::from(DISC);
-        let (sin, cos) = (crate::elementary::sin(angle), crate::elementary::cos(angle));
-        center + DVec2::new(cos, sin) * radius
-    };
-    drawing.polygon(&(0..DISC).map(corner).collect::<Vec<_>>(), color);
 }
 
 /// Returns the block of a label.
@@ -72,8 +58,8 @@ pub(super) fn legend(legend: &ColorLegend, size: f64, ink: Rgb) -> Block {
         let x = if color.is_some() { indent } else { 0.0 };
         if let Some(color) = color {
             let center = DVec2::new(radius, baseline - CAP_HEIGHT * size / 2.0);
-            disc(&mut drawing, center, radius + (size / 20.0).max(0.5), ink);
-            disc(&mut drawing, center, radius, color);
+            drawing.disc(center, radius + (size / 20.0).max(0.5), ink);
+            drawing.disc(center, radius, color);
         }
         width = width.max(x + text_width(text, size));
         let (position, align) = (DVec2::new(x, baseline), Align::Start);

@@ -1,7 +1,7 @@
 //! Axis tripods: three arrows that show directions in the picture.
 
 use super::Viewpoint;
-use super::block::{Block, disc};
+use super::block::Block;
 use crate::color::{Rgb, srgb};
 use crate::graphics::{Align, CAP_HEIGHT, Drawing, Text, X_HEIGHT, text_width};
 use crate::scene::AxisTripod;
@@ -111,7 +111,7 @@ pub(super) fn tripod(axes: &AxisTripod, view: &Viewpoint, size: f64, ink: Rgb) -
 
 fn draw(drawing: &mut Drawing, arrow: &Arrow, origin: DVec2, size: f64) {
     if arrow.is_short() {
-        disc(drawing, origin, DISC * size, arrow.color);
+        drawing.disc(origin, DISC * size, arrow.color);
         return;
     }
     let tip = origin + arrow.direction * LENGTH * size;
