@@ -1,56 +1,166 @@
 //! Traces rays among bodies of all kinds, after they were traced among spheres.
 
-use crate::body_rows::{BodyRow, BodyRows};
-use crate::body_tree::{BodyTree, FilterRay, Shape};
+use crate::body_rows::{BodyKind, BodyRow, BodyRows};
+use crate::body_tree::{Body, BodyHit, BodyTree, FilterRay, Part, Shape, Sphere};
 use crate::bounded::COARSE;
-use crate::bvh::{SMALL_STACK, STACK, Search, walk};
-use crate::capsules::{self, Capsule, CapsuleRow, Capsules, Part};
-use crate::cones::{self, Cone, Cones};
-use crate::ellipsoids::{self, Ellipsoid, Ellipsoids};
-use crate::exact::{self, Distance};
-use crate::intersect::{CLEAR, Root, confirm_closely};
+use crate::bvh::{SMALL_STACK, STACK, Search, Tree, walk};
+use crate::capsules::Capsules;
+use crate::cones::Cones;
+use crate::ellipsoids::Ellipsoids;
+use crate::exact::{Distance, Quotient};
+use crate::intersect::{CLEAR, Root};
 use crate::lanes::set_bits;
 use crate::ray::{ExactRay, Hits, MISS, Rays};
 use crate::slabs::RaySlabs;
-use crate::spheres::{LEAF, Spheres};
+use crate::spheres::LEAF;
+use glam::{DVec3, Vec3};
 use std::cmp::Ordering;
 
-/// The bodies of a scene, whose hits are numbered as [`BodyRows`] says.
+/// The bodies of a scene, whose hits are numbered as [`BodyRows`] says. Of a kind of which there are none, the tree may be `None`.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyTrees<'a> {
-    /// Spheres, whose hits are known.
-    pub spheres: &'a Spheres,
+    /// Spheres and their tree.
+    pub tree: Tree<'a>,
     /// Capsules.
-    pub capsules: &'a Capsules,
-    /// Ellipsoids; `None` if there are none.
+    pub capsules: Option<&'a Capsules>,
+    /// Ellipsoids.
     pub ellipsoids: Option<&'a Ellipsoids>,
-    /// Cones; `None` if there are none.
+    /// Cones.
     pub cones: Option<&'a Cones>,
 }
 
-impl BodyTrees<'_> {
-    /// The numbers of hits.
-    #[inline(always)]
-    fn rows(&self) -> BodyRows {
-        BodyRows {
-            spheres: self.spheres.len(),
-            capsules: self.capsules.len(),
-            ellipsoids: self.ellipsoids.map_or(0, Ellipsoids::len),
+/// Evaluates an expression of the tree of a kind, whatever its type: the one place where kinds are told apart. `None` for spheres, and
+/// where there is no tree.
+macro_rules! with_tree {
+    ($bodies:expr, $kind:expr, |$tree:ident| $value:expr) => {
+        match $kind {
+            BodyKind::Sphere => None,
+            BodyKind::Capsule => $bodies.capsules.map(|$tree| $value),
+            BodyKind::Ellipsoid => $bodies.ellipsoids.map(|$tree| $value),
+            BodyKind::Cone => $bodies.cones.map(|$tree| $value),
         }
+    };
+}
+pub(crate) use with_tree;
+
+/// Evaluates an expression of a body, whatever its kind.
+macro_rules! with_body {
+    ($bodies:expr, $row:expr, |$body:ident| $value:expr) => {{
+        let (bodies, BodyRow { kind, row, .. }) = (&$bodies, $row);
+        if kind == BodyKind::Sphere {
+            let $body = bodies.sphere(row);
+            Some($value)
+        } else {
+            with_tree!(bodies, kind, |tree| {
+                let $body = tree.body(row);
+                $value
+            })
+        }
+    }};
+}
+
+impl<'a> BodyTrees<'a> {
+    /// Spheres, and no other bodies.
+    pub fn of_spheres(tree: Tree<'a>) -> Self {
+        Self { tree, capsules: None, ellipsoids: None, cones: None }
     }
 
-    /// The body of a hit.
+    /// The numbers of hits.
     #[inline(always)]
-    fn body_of(&self, hit: u32) -> Body {
-        match self.rows().row(hit) {
-            Some(BodyRow::Sphere(row)) => Body::Sphere(row),
-            Some(BodyRow::Capsule(row)) => Body::Capsule(row.capsule, Part::Body),
-            Some(BodyRow::Ellipsoid(row)) => Body::Ellipsoid(row),
-            Some(BodyRow::Cone(row)) => Body::Cone(row),
-            None if hit == MISS => Body::Nothing,
-            None => Body::Ground,
-        }
+    pub fn rows(&self) -> BodyRows {
+        BodyRows(BodyKind::ALL.map(|kind| match kind {
+            BodyKind::Sphere => self.tree.spheres.len(),
+            _ => with_tree!(self, kind, |tree| tree.len()).unwrap_or(0),
+        }))
     }
+
+    /// The place of a body among those of its kind in the user's order.
+    pub fn id(&self, BodyRow { kind, row, .. }: BodyRow) -> u32 {
+        with_tree!(self, kind, |tree| tree.ids()[row]).unwrap_or_else(|| self.tree.spheres.id[row])
+    }
+
+    /// Returns the hit on the cap of the body that contains a point; `None` if none does.
+    pub fn enclosing(&self, point: Vec3) -> Option<u32> {
+        let others = |kind| {
+            with_tree!(self, kind, |tree| {
+                tree.enclosing(point.as_dvec3()).map(|row| self.cap(tree, row, point))
+            })?
+        };
+        let sphere = self.tree.bvh.enclosing_sphere(self.tree.spheres, point);
+        sphere.or_else(|| BodyKind::ALL.into_iter().find_map(others))
+    }
+
+    /// Returns the hits on the caps of all bodies that contain a point, in their order on the cut: the first is that of
+    /// [`BodyTrees::enclosing`].
+    pub fn all_enclosing(self, point: Vec3) -> impl Iterator<Item = u32> {
+        let others = move |kind| {
+            with_tree!(self, kind, |tree| {
+                let rows = tree.all_enclosing(point.as_dvec3()).into_iter();
+                rows.map(|row| self.cap(tree, row, point)).collect::<Vec<_>>()
+            })
+        };
+        let spheres = self.tree.bvh.enclosing_spheres(self.tree.spheres, point);
+        spheres.into_iter().chain(BodyKind::ALL.into_iter().filter_map(others).flatten())
+    }
+
+    /// The hit on the cap of a body at a point.
+    fn cap<S: Shape>(&self, tree: &BodyTree<S>, row: usize, point: Vec3) -> u32 {
+        let origin = point.as_dvec3();
+        let ray = ExactRay { origin, direction: DVec3::ZERO, origin_error: 0.0 };
+        self.rows().hit(row_at(tree, row, &ray, 0.0))
+    }
+
+    /// Returns the point of the surface where a ray hits a body, and the unit normal there; `None` for a sphere.
+    pub fn surface_at(&self, row: BodyRow, ray: &ExactRay, t: f64) -> Option<(DVec3, DVec3)> {
+        with_tree!(self, row.kind, |tree| tree.body(row.row).surface_at(ray, t))
+    }
+
+    /// Returns the outward unit normal at a point of a body's surface; `None` for a sphere.
+    pub fn normal_at(&self, row: BodyRow, point: DVec3) -> Option<DVec3> {
+        with_tree!(self, row.kind, |tree| tree.body(row.row).normal_at(point))
+    }
+
+    /// Returns the distance at which a ray that starts on or in a body leaves it; `None` for a sphere.
+    pub fn exit_distance(&self, row: BodyRow, ray: &ExactRay) -> Option<f64> {
+        with_tree!(self, row.kind, |tree| tree.body(row.row).exit_distance(ray))
+    }
+
+    /// Returns a sphere that stands for a body where only its place and size count.
+    pub fn like_sphere(&self, row: BodyRow) -> Sphere {
+        let other = with_tree!(self, row.kind, |tree| tree.body(row.row).like_sphere(row.half));
+        other.unwrap_or_else(|| self.sphere(row.row))
+    }
+
+    /// A row of the spheres.
+    pub(crate) fn sphere(&self, row: usize) -> Sphere {
+        let (center, radius) = self.tree.spheres.exact(row);
+        Sphere { center, radius }
+    }
+
+    /// Decides where a ray hits a body, with a close bound.
+    pub(crate) fn decide(&self, ray: &ExactRay, row: BodyRow) -> Option<BodyHit> {
+        with_body!(self, row, |body| body.hit(ray))?
+    }
+
+    /// The distance of a hit without rounding. One without error is a given number: a bound, or 0 where the ray starts on a
+    /// body.
+    pub(crate) fn distance(&self, ray: &ExactRay, root: &Root, row: Option<BodyRow>) -> Quotient {
+        let body = row.filter(|_| root.error != 0.0);
+        let distance = body.and_then(|row| with_body!(self, row, |body| body.distance(ray)));
+        distance.unwrap_or_else(|| Distance::Number(root.t).value(ray))
+    }
+
+    /// The sphere whose surface a part of a body's surface is. In molecules drawn with sticks the ends of these coincide with
+    /// atoms and with each other.
+    pub(crate) fn sphere_of(&self, row: BodyRow, part: Part) -> Option<Sphere> {
+        with_body!(self, row, |body| body.sphere_of(part))?
+    }
+}
+
+/// The body of a hit on a row of a kind.
+pub(crate) fn row_at<S: Shape>(tree: &BodyTree<S>, row: usize, ray: &ExactRay, t: f64) -> BodyRow {
+    let half = if S::KIND.hits() > 1 { tree.body(row).half_at(ray, t) } else { 0 };
+    BodyRow { kind: S::KIND, row, half }
 }
 
 /// Replaces each hit by one on a body that is no sphere if that is nearer. On entry hits are those of the spheres and the ground, or
@@ -71,49 +181,54 @@ pub fn occluded(bodies: BodyTrees, rays: &Rays, hits: &mut Hits) -> u64 {
 
 fn trace<const ANY: bool>(bodies: BodyTrees, rays: &Rays, hits: &mut Hits) -> u64 {
     let mut exact = 0;
-    if !bodies.capsules.is_empty() {
-        exact += trace_kind::<Capsule, ANY>(bodies, bodies.capsules, rays, hits);
-    }
-    if let Some(ellipsoids) = bodies.ellipsoids {
-        exact += trace_kind::<Ellipsoid, ANY>(bodies, ellipsoids, rays, hits);
-    }
-    if let Some(cones) = bodies.cones {
-        exact += trace_kind::<Cone, ANY>(bodies, cones, rays, hits);
+    for kind in BodyKind::ALL {
+        let found = with_tree!(bodies, kind, |tree| if tree.is_empty() {
+            0
+        } else {
+            trace_kind::<_, ANY>(bodies, tree, rays, hits)
+        });
+        exact += found.unwrap_or(0);
     }
     exact
 }
 
 /// Traces rays among bodies of one kind, after they were traced among those before it.
-fn trace_kind<K: Kind, const ANY: bool>(
+fn trace_kind<S: Shape, const ANY: bool>(
     bodies: BodyTrees,
-    tree: &BodyTree<K>,
+    tree: &BodyTree<S>,
     rays: &Rays,
     hits: &mut Hits,
 ) -> u64 {
-    let mut exact = 0;
+    let (rows, mut exact) = (bodies.rows(), 0);
     for row in 0..rays.len() {
         let (t, known) = (hits.t[row], hits.sphere[row]);
         if ANY && known != MISS {
             continue;
         }
-        let (ray, own) = (rays.exact(row), bodies.body_of(rays.own[row]));
-        let body = bodies.body_of(known);
+        let (ray, own) = (rays.exact(row), rows.row(rays.own[row]));
+        let body = match rows.row(known) {
+            Some(body) => Known::Body(body, Part::Body),
+            None if known == MISS => Known::Nothing,
+            None => Known::Ground,
+        };
         let nearest = match body {
-            Body::Nothing | Body::Ground => Nearest { t, error: 0.0, body },
-            Body::Sphere(_) => Nearest { t, error: t * CLEAR, body },
-            // The exit of a ray that is inside a body: a given number.
-            _ if body.is(own) => Nearest { t, error: 0.0, body: Body::Nothing },
-            Body::Capsule(..) | Body::Ellipsoid(_) | Body::Cone(_) => {
-                Nearest { t, error: (t * COARSE).max(f64::MIN_POSITIVE), body }
+            Known::Body(BodyRow { kind: BodyKind::Sphere, .. }, _) => {
+                Nearest { t, error: t * CLEAR, body }
             }
+            // The exit of a ray that is inside a body: a given number.
+            Known::Body(body, _) if own.is_some_and(|own| is_same(body, own)) => {
+                Nearest { t, error: 0.0, body: Known::Nothing }
+            }
+            Known::Body(..) => Nearest { t, error: (t * COARSE).max(f64::MIN_POSITIVE), body },
+            Known::Nothing | Known::Ground => Nearest { t, error: 0.0, body },
         };
         let (origin, direction) = (rays.origin.row(row), rays.direction.row(row));
-        let mut search = RaySearch::<K, ANY> {
+        let mut search = RaySearch::<S, ANY> {
             bodies,
             tree,
             filter: FilterRay::new(origin, direction),
             ray: &ray,
-            own,
+            own: own.filter(|own| own.kind == S::KIND).map(|own| own.row),
             nearest,
             found: None,
             t_far: nearest.far(),
@@ -126,75 +241,15 @@ fn trace_kind<K: Kind, const ANY: bool>(
         exact += search.exact;
         if let Some(found) = search.found {
             let t = search.nearest.t;
-            hits.set(row, t, K::hit(&bodies, found, &ray, t));
+            hits.set(row, t, rows.hit(row_at(tree, found, &ray, t)));
         }
     }
     exact
 }
 
-/// A kind of body that rays are traced among.
-trait Kind: Shape {
-    /// Decides whether and where a ray hits a body, which is row `row` of its kind.
-    fn decide(&self, ray: &ExactRay, row: usize) -> Option<(Root, Body)>;
-
-    /// Row `row` of the kind.
-    fn row(row: usize) -> Body;
-
-    /// The number of a hit on a row of the kind.
-    fn hit(bodies: &BodyTrees, row: usize, ray: &ExactRay, t: f64) -> u32;
-}
-
-impl Kind for Capsule {
-    #[inline(always)]
-    fn decide(&self, ray: &ExactRay, row: usize) -> Option<(Root, Body)> {
-        let hit = capsules::intersect(ray, self)?;
-        Some((hit.root, Body::Capsule(row, hit.part)))
-    }
-
-    #[inline(always)]
-    fn row(row: usize) -> Body {
-        Body::Capsule(row, Part::Body)
-    }
-
-    #[inline(always)]
-    fn hit(bodies: &BodyTrees, row: usize, ray: &ExactRay, t: f64) -> u32 {
-        let row = CapsuleRow::at(bodies.capsules, row, ray, t);
-        bodies.rows().hit(BodyRow::Capsule(row))
-    }
-}
-
-impl Kind for Ellipsoid {
-    #[inline(always)]
-    fn decide(&self, ray: &ExactRay, row: usize) -> Option<(Root, Body)> {
-        ellipsoids::intersect(ray, self).map(|root| (root, Body::Ellipsoid(row)))
-    }
-
-    #[inline(always)]
-    fn row(row: usize) -> Body {
-        Body::Ellipsoid(row)
-    }
-
-    #[inline(always)]
-    fn hit(bodies: &BodyTrees, row: usize, _: &ExactRay, _: f64) -> u32 {
-        bodies.rows().hit(BodyRow::Ellipsoid(row))
-    }
-}
-
-impl Kind for Cone {
-    #[inline(always)]
-    fn decide(&self, ray: &ExactRay, row: usize) -> Option<(Root, Body)> {
-        cones::intersect(ray, self).map(|root| (root, Body::Cone(row)))
-    }
-
-    #[inline(always)]
-    fn row(row: usize) -> Body {
-        Body::Cone(row)
-    }
-
-    #[inline(always)]
-    fn hit(bodies: &BodyTrees, row: usize, _: &ExactRay, _: f64) -> u32 {
-        bodies.rows().hit(BodyRow::Cone(row))
-    }
+/// Returns whether two hits are on the same body.
+fn is_same(a: BodyRow, b: BodyRow) -> bool {
+    (a.kind, a.row) == (b.kind, b.row)
 }
 
 /// The nearest hit so far, or the distance at which the search ends.
@@ -203,32 +258,16 @@ struct Nearest {
     t: f64,
     /// The true distance is no farther from `t` than this; 0 if `t` is a given number.
     error: f64,
-    body: Body,
+    body: Known,
 }
 
-/// A body, or none.
+/// What is at a distance.
 #[derive(Clone, Copy)]
-enum Body {
+enum Known {
     Nothing,
     Ground,
-    Sphere(usize),
-    /// With the part of its surface that is hit.
-    Capsule(usize, Part),
-    Ellipsoid(usize),
-    Cone(usize),
-}
-
-impl Body {
-    /// Returns whether both are the same body, which is no sphere.
-    #[inline(always)]
-    fn is(self, other: Self) -> bool {
-        match (self, other) {
-            (Self::Capsule(row, _), Self::Capsule(other, _))
-            | (Self::Ellipsoid(row), Self::Ellipsoid(other))
-            | (Self::Cone(row), Self::Cone(other)) => row == other,
-            _ => false,
-        }
-    }
+    /// A body, and the part of its surface that is hit; any part of one that other kinds are compared with.
+    Body(BodyRow, Part),
 }
 
 impl Nearest {
@@ -240,13 +279,13 @@ impl Nearest {
 }
 
 /// A search for the hit of one ray.
-struct RaySearch<'a, K: Kind, const ANY: bool> {
+struct RaySearch<'a, S: Shape, const ANY: bool> {
     bodies: BodyTrees<'a>,
-    tree: &'a BodyTree<K>,
+    tree: &'a BodyTree<S>,
     filter: FilterRay,
     ray: &'a ExactRay,
-    /// The body that the ray starts on: it is convex, and never hit from outside.
-    own: Body,
+    /// The row that the ray starts on: it is convex, and never hit from outside.
+    own: Option<usize>,
     nearest: Nearest,
     /// The row that is hit.
     found: Option<usize>,
@@ -254,9 +293,9 @@ struct RaySearch<'a, K: Kind, const ANY: bool> {
     exact: u64,
 }
 
-impl<K: Kind, const ANY: bool> Search for RaySearch<'_, K, ANY> {
+impl<S: Shape, const ANY: bool> Search for RaySearch<'_, S, ANY> {
     const ANY: bool = ANY;
-    type Block = K::Block;
+    type Block = S::Block;
 
     #[inline(always)]
     fn t_far(&self) -> f32 {
@@ -264,8 +303,8 @@ impl<K: Kind, const ANY: bool> Search for RaySearch<'_, K, ANY> {
     }
 
     #[inline(always)]
-    fn test_block(&mut self, index: usize, block: &K::Block) -> bool {
-        let (lanes, near) = K::may_hit(&self.filter, block, self.t_far);
+    fn test_block(&mut self, index: usize, block: &S::Block) -> bool {
+        let (lanes, near) = S::may_hit(&self.filter, block, self.t_far);
         if lanes == 0 {
             return false;
         }
@@ -282,18 +321,21 @@ impl<K: Kind, const ANY: bool> Search for RaySearch<'_, K, ANY> {
     }
 }
 
-impl<K: Kind, const ANY: bool> RaySearch<'_, K, ANY> {
+impl<S: Shape, const ANY: bool> RaySearch<'_, S, ANY> {
     /// Tests the ray against a body, and keeps the hit if it is nearer than the one so far. Returns whether it is.
     #[inline(never)]
     fn test(&mut self, row: usize) -> bool {
-        if self.own.is(K::row(row)) {
+        if self.own == Some(row) {
             return false;
         }
-        let Some((root, body)) = self.tree.body(row).decide(self.ray, row) else { return false };
-        self.exact += u64::from(root.exact);
-        let nearer = self.is_nearer(&root, body);
+        let body = self.tree.body(row);
+        let Some(hit) = body.intersect(self.ray) else { return false };
+        self.exact += u64::from(hit.root.exact);
+        let nearer = self.is_nearer(&hit, &body, row);
         if nearer {
-            self.nearest = Nearest { t: root.t, error: root.error, body };
+            let BodyHit { root: Root { t, error, .. }, part } = hit;
+            let known = Known::Body(BodyRow::new(S::KIND, row), part);
+            self.nearest = Nearest { t, error, body: known };
             self.found = Some(row);
             self.t_far = self.nearest.far();
         }
@@ -301,107 +343,67 @@ impl<K: Kind, const ANY: bool> RaySearch<'_, K, ANY> {
     }
 
     #[inline(always)]
-    fn is_nearer(&mut self, root: &Root, body: Body) -> bool {
-        let (Root { t, error, .. }, nearest) = (*root, self.nearest);
+    fn is_nearer(&mut self, hit: &BodyHit, body: &S, row: usize) -> bool {
+        let (Root { t, error, .. }, nearest) = (hit.root, self.nearest);
         if t + error < nearest.t - nearest.error {
             return true;
         }
         if t - error > nearest.t + nearest.error {
             return false;
         }
-        match self.compare(root, body) {
+        match self.compare(hit, body) {
             Ordering::Less => true,
-            Ordering::Equal => !ANY && self.precedes(body),
+            Ordering::Equal => !ANY && self.precedes(row),
             Ordering::Greater => false,
         }
     }
 
     /// Compares distances that are closer than their errors.
     #[cold]
-    fn compare(&mut self, root: &Root, body: Body) -> Ordering {
-        if self.coincides(body) {
-            return Ordering::Equal;
-        }
+    fn compare(&mut self, hit: &BodyHit, body: &S) -> Ordering {
         let Nearest { t, error, body: nearest } = self.nearest;
         let number = Root { t, error: 0.0, exact: false };
-        let known = if error == 0.0 { number } else { self.decide(nearest).unwrap_or(number) };
-        let gap = root.t - known.t;
-        if gap.abs() > root.error + known.error {
+        let (mut known, mut nearest_row) = (number, None);
+        if let Known::Body(row, part) = nearest {
+            if self.coincides(hit, body, row, part) {
+                return Ordering::Equal;
+            }
+            nearest_row = Some(row);
+            if error != 0.0 {
+                known = self.bodies.decide(self.ray, row).map_or(number, |hit| hit.root);
+            }
+        }
+        let gap = hit.root.t - known.t;
+        if gap.abs() > hit.root.error + known.error {
             return gap.total_cmp(&0.0);
         }
         self.exact += 1;
-        let (own, known) = (self.distance(root, body), self.distance(&known, nearest));
-        exact::compare(self.ray, &own, &known)
-    }
-
-    /// Decides where the ray hits the nearest body so far, with a close bound.
-    fn decide(&self, body: Body) -> Option<Root> {
-        let BodyTrees { spheres, capsules, ellipsoids, cones } = self.bodies;
-        match body {
-            Body::Nothing | Body::Ground => None,
-            Body::Sphere(row) => {
-                let (center, radius) = spheres.exact(row);
-                confirm_closely(self.ray, center, radius, || false)
-            }
-            Body::Capsule(row, _) => capsules.body(row).decide(self.ray, row).map(|hit| hit.0),
-            Body::Ellipsoid(row) => ellipsoids?.body(row).decide(self.ray, row).map(|hit| hit.0),
-            Body::Cone(row) => cones?.body(row).decide(self.ray, row).map(|hit| hit.0),
-        }
-    }
-
-    /// The distance of a hit without rounding. One without error is a given number: a bound, or 0 where the ray starts on a
-    /// body.
-    fn distance(&self, root: &Root, body: Body) -> Distance {
-        let BodyTrees { spheres, capsules, ellipsoids, cones } = self.bodies;
-        let distance = match body {
-            _ if root.error == 0.0 => None,
-            Body::Sphere(row) => {
-                let (center, radius) = spheres.exact(row);
-                Some(Distance::Hit(center, radius))
-            }
-            Body::Capsule(row, _) => Some(Distance::Capsule(capsules.body(row))),
-            Body::Ellipsoid(row) => ellipsoids.map(|all| Distance::Ellipsoid(all.body(row))),
-            Body::Cone(row) => cones.map(|all| Distance::Cone(all.body(row))),
-            Body::Nothing | Body::Ground => None,
+        let own = if hit.root.error == 0.0 {
+            Distance::Number(hit.root.t).value(self.ray)
+        } else {
+            Body::distance(body, self.ray)
         };
-        distance.unwrap_or(Distance::Number(root.t))
+        own.compare(&self.bodies.distance(self.ray, &known, nearest_row))
     }
 
-    /// Returns whether the part of the surface is also that of the nearest hit: of molecules drawn with sticks, ends
-    /// coincide with atoms and with ends of other sticks.
-    fn coincides(&self, body: Body) -> bool {
-        let BodyTrees { spheres, capsules, ellipsoids, cones } = self.bodies;
-        match (body, self.nearest.body) {
-            (Body::Capsule(row, part), Body::Capsule(other, other_part)) => {
-                let (capsule, other) = (capsules.body(row), capsules.body(other));
-                capsule == other
-                    || matches!((part, other_part), (Part::End(end), Part::End(other_end))
-                        if (capsule.ends[end], capsule.radius) == (other.ends[other_end], other.radius))
-            }
-            (Body::Capsule(row, Part::End(end)), Body::Sphere(sphere)) => {
-                let capsule = capsules.body(row);
-                (capsule.ends[end], capsule.radius) == spheres.exact(sphere)
-            }
-            (Body::Ellipsoid(row), Body::Ellipsoid(other)) => {
-                ellipsoids.is_some_and(|all| all.body(row) == all.body(other))
-            }
-            (Body::Cone(row), Body::Cone(other)) => {
-                cones.is_some_and(|all| all.body(row) == all.body(other))
-            }
-            _ => false,
+    /// Returns whether the part of the surface is also that of the nearest hit: the body may be there twice, and of molecules drawn
+    /// with sticks, ends coincide with atoms and with ends of other sticks.
+    fn coincides(&self, hit: &BodyHit, body: &S, nearest: BodyRow, part: Part) -> bool {
+        if nearest.kind == S::KIND && self.tree.body(nearest.row) == *body {
+            return true;
         }
+        let sphere = body.end_sphere(hit.part);
+        sphere.is_some() && self.bodies.sphere_of(nearest, part) == sphere
     }
 
-    /// Returns whether a body comes before the nearest hit, which is at the same distance: spheres come first, then capsules,
-    /// ellipsoids and cones, the ground last, and a bound is no hit.
-    fn precedes(&self, body: Body) -> bool {
+    /// Returns whether a body comes before the nearest hit, which is at the same distance: kinds come in their order, the
+    /// ground last, and a bound is no hit.
+    fn precedes(&self, row: usize) -> bool {
         let id = self.tree.ids();
-        match (body, self.nearest.body) {
-            (_, Body::Ground) => true,
-            (Body::Capsule(row, _), Body::Capsule(other, _))
-            | (Body::Ellipsoid(row), Body::Ellipsoid(other))
-            | (Body::Cone(row), Body::Cone(other)) => id[row] < id[other],
-            _ => false,
+        match self.nearest.body {
+            Known::Ground => true,
+            Known::Body(nearest, _) => nearest.kind == S::KIND && id[row] < id[nearest.row],
+            Known::Nothing => false,
         }
     }
 }

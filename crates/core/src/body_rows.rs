@@ -1,30 +1,55 @@
 //! Numbers of hits: rows of the spheres, after them two for each capsule, then one for each ellipsoid, and one for each cone.
 
-use crate::capsules::CapsuleRow;
 use crate::ray::GROUND;
 
-/// The numbers of bodies of the kinds that come before others.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct BodyRows {
-    /// Number of spheres.
-    pub spheres: usize,
-    /// Number of capsules.
-    pub capsules: usize,
-    /// Number of ellipsoids.
-    pub ellipsoids: usize,
+/// A kind of body. Of bodies at the same distance those of the first kind come first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum BodyKind {
+    /// Spheres.
+    Sphere,
+    /// Capsules.
+    Capsule,
+    /// Ellipsoids.
+    Ellipsoid,
+    /// Cones.
+    Cone,
 }
+
+impl BodyKind {
+    /// All kinds, in their order.
+    pub const ALL: [Self; 4] = [Self::Sphere, Self::Capsule, Self::Ellipsoid, Self::Cone];
+
+    /// Numbers of hits of a body of each kind: each half of a capsule has one.
+    const HITS: [usize; Self::ALL.len()] = [1, 2, 1, 1];
+
+    /// The number of hits of each body of the kind.
+    #[inline(always)]
+    pub const fn hits(self) -> usize {
+        Self::HITS[self as usize]
+    }
+}
+
+/// The numbers of bodies of all kinds, in the order of [`BodyKind::ALL`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct BodyRows(pub [usize; BodyKind::ALL.len()]);
 
 /// A body, by its row among those of its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BodyRow {
-    /// A sphere.
-    Sphere(usize),
-    /// A half of a capsule.
-    Capsule(CapsuleRow),
-    /// An ellipsoid.
-    Ellipsoid(usize),
-    /// A cone.
-    Cone(usize),
+pub struct BodyRow {
+    /// The kind.
+    pub kind: BodyKind,
+    /// The row.
+    pub row: usize,
+    /// Which of the hits of the body: of a capsule, the half of its axis, 0 about the first end, 1 about the second; else 0.
+    pub half: usize,
+}
+
+impl BodyRow {
+    /// A body that has one hit.
+    #[inline(always)]
+    pub fn new(kind: BodyKind, row: usize) -> Self {
+        Self { kind, row, half: 0 }
+    }
 }
 
 impl BodyRows {
@@ -34,27 +59,46 @@ impl BodyRows {
         if hit >= GROUND {
             return None;
         }
-        let hit = hit as usize;
-        let Some(row) = hit.checked_sub(self.spheres) else { return Some(BodyRow::Sphere(hit)) };
-        let Some(rest) = row.checked_sub(2 * self.capsules) else {
-            return Some(BodyRow::Capsule(CapsuleRow { capsule: row / 2, half: row % 2 }));
-        };
-        Some(match rest.checked_sub(self.ellipsoids) {
-            None => BodyRow::Ellipsoid(rest),
-            Some(row) => BodyRow::Cone(row),
-        })
+        let mut rest = hit as usize;
+        for kind in BodyKind::ALL {
+            let hits = self.hits(kind);
+            if rest < hits {
+                let (row, half) = (rest / kind.hits(), rest % kind.hits());
+                return Some(BodyRow { kind, row, half });
+            }
+            rest -= hits;
+        }
+        None
     }
 
     /// Returns the hit on a body.
     #[inline(always)]
     pub fn hit(self, row: BodyRow) -> u32 {
-        let row = match row {
-            BodyRow::Sphere(row) => row,
-            BodyRow::Capsule(CapsuleRow { capsule, half }) => self.spheres + 2 * capsule + half,
-            BodyRow::Ellipsoid(row) => self.spheres + 2 * self.capsules + row,
-            BodyRow::Cone(row) => self.spheres + 2 * self.capsules + self.ellipsoids + row,
-        };
-        row as u32
+        (self.first(row.kind) + row.row * row.kind.hits() + row.half) as u32
+    }
+
+    /// Returns the first hit on a body of a kind.
+    #[inline(always)]
+    pub fn first(self, kind: BodyKind) -> usize {
+        BodyKind::ALL[..kind as usize].iter().map(|kind| self.hits(*kind)).sum()
+    }
+
+    /// Returns the number of bodies of a kind.
+    #[inline(always)]
+    pub fn count(self, kind: BodyKind) -> usize {
+        self.0[kind as usize]
+    }
+
+    /// Returns the number of hits on bodies of a kind.
+    #[inline(always)]
+    pub fn hits(self, kind: BodyKind) -> usize {
+        kind.hits() * self.count(kind)
+    }
+
+    /// Returns the number of hits on bodies of all kinds.
+    #[inline(always)]
+    pub fn all_hits(self) -> usize {
+        BodyKind::ALL.into_iter().map(|kind| self.hits(kind)).sum()
     }
 }
 
@@ -65,27 +109,21 @@ mod tests {
 
     #[test]
     fn every_hit_is_one_body() {
-        let rows = BodyRows { spheres: 3, capsules: 2, ellipsoids: 2 };
-        let capsule = |capsule, half| BodyRow::Capsule(CapsuleRow { capsule, half });
-        let expected = [
-            BodyRow::Sphere(0),
-            BodyRow::Sphere(1),
-            BodyRow::Sphere(2),
-            capsule(0, 0),
-            capsule(0, 1),
-            capsule(1, 0),
-            capsule(1, 1),
-            BodyRow::Ellipsoid(0),
-            BodyRow::Ellipsoid(1),
-            BodyRow::Cone(0),
-            BodyRow::Cone(1),
-        ];
-        for (hit, &row) in (0..).zip(&expected) {
-            assert_eq!(rows.row(hit), Some(row));
-            assert_eq!(rows.hit(row), hit);
+        let rows = BodyRows([3, 2, 2, 2]);
+        let mut hit = 0;
+        for kind in BodyKind::ALL {
+            assert_eq!(rows.first(kind), hit as usize);
+            for row in 0..rows.count(kind) {
+                for half in 0..kind.hits() {
+                    let row = BodyRow { kind, row, half };
+                    assert_eq!((rows.row(hit), rows.hit(row)), (Some(row), hit));
+                    hit += 1;
+                }
+            }
         }
-        assert!(rows.row(GROUND).is_none() && rows.row(MISS).is_none());
-        let alone = BodyRows { spheres: 0, capsules: 0, ellipsoids: 0 };
-        assert_eq!(alone.row(0), Some(BodyRow::Cone(0)));
+        assert_eq!((hit, rows.all_hits()), (11, 11));
+        assert!([hit, GROUND, MISS].into_iter().all(|hit| rows.row(hit).is_none()));
+        let alone = BodyRows([0, 0, 0, 1]);
+        assert_eq!(alone.row(0), Some(BodyRow::new(BodyKind::Cone, 0)));
     }
 }

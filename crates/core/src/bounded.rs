@@ -18,8 +18,10 @@ const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
 /// A number, and a bound of its error; infinite or NaN where nothing is known.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Bounded {
+pub struct Bounded {
+    /// The number.
     pub(crate) value: f64,
+    /// A bound of its error.
     pub(crate) error: f64,
 }
 

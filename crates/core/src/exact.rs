@@ -10,25 +10,17 @@
 //!
 //! It takes microseconds, and is needed about never: [`crate::intersect::confirm`] says when.
 
-mod capsule;
-mod cone;
 mod dyadic;
-mod ellipsoid;
 
-pub use capsule::{CapsuleRoot, capsule_exit, capsule_hit};
-pub use cone::{cone_exit, cone_hit};
-pub use ellipsoid::ellipsoid_hit;
+pub(crate) use dyadic::{Dyadic, SignedRoot, cross, dot};
 
-use crate::capsule::Capsule;
-use crate::cone::Cone;
-use crate::ellipsoid::Ellipsoid;
 use crate::ray::ExactRay;
-use dyadic::{Dyadic, SignedRoot, dot, nearest_root};
+use dyadic::nearest_root;
 use glam::DVec3;
 use std::cmp::Ordering;
 
 /// A ray and a sphere, exactly.
-struct Encounter {
+pub(crate) struct Encounter {
     a: Dyadic,
     b: Dyadic,
     outside: Dyadic,
@@ -36,7 +28,7 @@ struct Encounter {
 }
 
 impl Encounter {
-    fn new(ray: &ExactRay, center: DVec3, radius: f64) -> Self {
+    pub(crate) fn new(ray: &ExactRay, center: DVec3, radius: f64) -> Self {
         let exact = |v: DVec3| v.to_array().map(Dyadic::new);
         let (origin, center) = (exact(ray.origin), exact(center));
         let from_center: [Dyadic; 3] = std::array::from_fn(|i| &origin[i] - &center[i]);
@@ -44,7 +36,11 @@ impl Encounter {
     }
 
     /// The origin is given relative to the center, and the square of the radius.
-    fn between(from_center: &[Dyadic; 3], direction: &[Dyadic; 3], radius2: &Dyadic) -> Self {
+    pub(crate) fn between(
+        from_center: &[Dyadic; 3],
+        direction: &[Dyadic; 3],
+        radius2: &Dyadic,
+    ) -> Self {
         let a = dot(direction, direction);
         let b = -dot(from_center, direction);
         let outside = &dot(from_center, from_center) - radius2;
@@ -54,7 +50,7 @@ impl Encounter {
 
     /// The sign with which the root of the discriminant enters the distance; `None` if there is no
     /// hit.
-    fn root(&self) -> Option<i32> {
+    pub(crate) fn root(&self) -> Option<i32> {
         let heads_in = self.b.sign() > 0;
         match self.outside.sign() {
             1 => (heads_in && self.discriminant.sign() >= 0).then_some(-1),
@@ -62,6 +58,16 @@ impl Encounter {
             // On the surface the discriminant is b squared: twice the way to the middle.
             _ => heads_in.then_some(1),
         }
+    }
+
+    /// Returns whether the line meets the sphere.
+    pub(crate) fn meets(&self) -> bool {
+        self.discriminant.sign() >= 0
+    }
+
+    /// The distance with a sign of the root of the discriminant.
+    pub(crate) fn distance(self, sign: i32) -> Quotient {
+        Quotient { p: self.b, sign, q: self.discriminant, a: self.a }
     }
 }
 
@@ -106,32 +112,27 @@ pub fn normal(ray: &ExactRay, center: DVec3, radius: f64) -> DVec3 {
     (DVec3::from(perpendicular) + along).normalize_or(-ray.direction.normalize())
 }
 
-/// A distance along a ray.
+/// A distance along a ray, of a sphere or given.
 #[derive(Clone, Copy, Debug)]
 pub enum Distance {
     /// The distance at which the ray hits this sphere; it must hit it.
     Hit(DVec3, f64),
-    /// The distance at which the ray hits this capsule; it must hit it.
-    Capsule(Capsule),
-    /// The distance at which the ray hits this ellipsoid; it must hit it.
-    Ellipsoid(Ellipsoid),
-    /// The distance at which the ray hits this cone; it must hit it.
-    Cone(Cone),
     /// This number.
     Number(f64),
 }
 
-/// A number `(p + sign sqrt(q)) / a`; `a` is positive, `q` not negative.
-struct Quotient {
-    p: Dyadic,
-    sign: i32,
-    q: Dyadic,
-    a: Dyadic,
+/// A number `(p + sign sqrt(q)) / a`: the distance of a hit on a body without rounding. `a` is positive, `q` not negative.
+#[derive(Clone, Debug)]
+pub struct Quotient {
+    pub(crate) p: Dyadic,
+    pub(crate) sign: i32,
+    pub(crate) q: Dyadic,
+    pub(crate) a: Dyadic,
 }
 
 impl Quotient {
     /// A quotient of two numbers; `None` where the divisor is 0.
-    fn ratio(dividend: Dyadic, divisor: Dyadic) -> Option<Self> {
+    pub(crate) fn ratio(dividend: Dyadic, divisor: Dyadic) -> Option<Self> {
         let zero = Dyadic::new(0.0);
         match divisor.sign() {
             0 => None,
@@ -145,11 +146,12 @@ impl Quotient {
     }
 
     /// -1, 0 or 1.
-    fn sign(&self) -> i32 {
+    pub(crate) fn sign(&self) -> i32 {
         sign_of_sum(&self.p, self.root(), SignedRoot { sign: 0, ..self.root() })
     }
 
-    fn compare(&self, other: &Self) -> Ordering {
+    /// Compares two distances, exactly.
+    pub fn compare(&self, other: &Self) -> Ordering {
         let (p, q) = (&self.p * &other.a, &self.q * &other.a.square());
         let (other_p, other_q) = (&other.p * &self.a, &other.q * &self.a.square());
         let root = SignedRoot { sign: self.sign, radicand: &q };
@@ -158,32 +160,24 @@ impl Quotient {
     }
 
     /// The nearest number of double precision, of a positive number.
-    fn nearest(&self) -> f64 {
+    pub fn nearest(&self) -> f64 {
         nearest_root(&self.a, &self.p, self.root())
     }
 }
 
 impl Distance {
-    fn value(&self, ray: &ExactRay) -> Quotient {
-        let number = |t: f64| {
-            let (p, q) = (Dyadic::new(t), Dyadic::new(0.0));
-            Quotient { p, sign: 0, q, a: Dyadic::new(1.0) }
-        };
+    /// Returns the distance without rounding.
+    pub fn value(&self, ray: &ExactRay) -> Quotient {
         match *self {
             Self::Hit(center, radius) => {
                 let encounter = Encounter::new(ray, center, radius);
                 let sign = encounter.root().unwrap_or(0);
-                let Encounter { a, b, discriminant, .. } = encounter;
-                Quotient { p: b, sign, q: discriminant, a }
+                encounter.distance(sign)
             }
-            Self::Capsule(capsule) => {
-                capsule::first(ray, &capsule).map_or_else(|| number(0.0), |hit| hit.0)
+            Self::Number(t) => {
+                let (p, q) = (Dyadic::new(t), Dyadic::new(0.0));
+                Quotient { p, sign: 0, q, a: Dyadic::new(1.0) }
             }
-            Self::Ellipsoid(ellipsoid) => {
-                ellipsoid::first(ray, &ellipsoid).unwrap_or_else(|| number(0.0))
-            }
-            Self::Cone(cone) => cone::first(ray, &cone).unwrap_or_else(|| number(0.0)),
-            Self::Number(t) => number(t),
         }
     }
 }
@@ -200,7 +194,7 @@ pub fn compare(ray: &ExactRay, first: &Distance, second: &Distance) -> Ordering 
 }
 
 /// The sign of `p + s1 sqrt(q1) + s2 sqrt(q2)`, a number and two roots.
-fn sign_of_sum(p: &Dyadic, first: SignedRoot, second: SignedRoot) -> i32 {
+pub(crate) fn sign_of_sum(p: &Dyadic, first: SignedRoot, second: SignedRoot) -> i32 {
     let (q1, q2) = (first.radicand, second.radicand);
     let (s1, s2) = (first.sign * q1.sign(), second.sign * q2.sign());
     let roots = match (s1, s2) {

@@ -39,13 +39,10 @@ mod body_rows;
 mod body_tree;
 mod bounded;
 mod bvh;
-mod capsule;
 mod capsules;
-mod cone;
 mod cones;
 mod conservative;
 mod elementary;
-mod ellipsoid;
 mod ellipsoids;
 mod exact;
 #[cfg(test)]
@@ -80,7 +77,9 @@ pub mod internals {
     }
     /// Bodies of one kind in columns, with their tree.
     pub mod body_tree {
-        pub use crate::body_tree::{BodyTree, FilterRay, Shape};
+        pub use crate::body_tree::{
+            BodyHit, BodyTree, Doubt, FilterRay, Line, Part, Shape, Side, Sphere,
+        };
     }
     /// The bounding volume hierarchy, its builders and its traversal.
     pub mod bvh {

@@ -9,17 +9,14 @@
 //! The bodies that a ray intersects, and their order along it, are decided as exactly as for opaque bodies. A ray that starts
 //! inside of a translucent body leaves it unattenuated.
 
-use crate::body_rows::{BodyRow, BodyRows};
-use crate::body_tree;
-use crate::bvh::{Intersection, Tree, for_each_intersection};
-use crate::capsules::{self, CapsuleRow, Capsules, Part};
-use crate::cones::Cones;
+use crate::bodies::{BodyTrees, row_at, with_tree};
+use crate::body_rows::{BodyKind, BodyRow};
+use crate::body_tree::{self, Part, Sphere};
+use crate::bvh::{Intersection, for_each_intersection};
 use crate::elementary;
-use crate::ellipsoids::Ellipsoids;
-use crate::exact::{self, Distance};
-use crate::intersect::{Root, confirm_closely};
+use crate::exact::Quotient;
+use crate::intersect::Root;
 use crate::ray::{ExactRay, MISS};
-use glam::DVec3;
 use std::cell::Cell;
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
@@ -82,15 +79,9 @@ impl OpticalDepth {
 /// Bodies of all kinds, with the depth of each.
 #[derive(Clone, Copy, Debug)]
 pub struct TranslucentBodies<'a, D> {
-    /// Spheres and their tree.
-    pub tree: Tree<'a>,
-    /// Capsules.
-    pub capsules: &'a Capsules,
-    /// Ellipsoids.
-    pub ellipsoids: &'a Ellipsoids,
-    /// Cones.
-    pub cones: &'a Cones,
-    /// The depth of the body of a hit, numbered as [`BodyRows`] says.
+    /// The bodies.
+    pub bodies: BodyTrees<'a>,
+    /// The depth of the body of a hit.
     pub depth: D,
 }
 
@@ -281,15 +272,6 @@ impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
         (sum, exact)
     }
 
-    /// The numbers of hits.
-    fn rows(&self) -> BodyRows {
-        BodyRows {
-            spheres: self.tree.spheres.len(),
-            capsules: self.capsules.len(),
-            ellipsoids: self.ellipsoids.len(),
-        }
-    }
-
     /// Calls a function with each body that may end the ray. The function returns a distance beyond which no body matters, or breaks.
     fn for_each_body(
         &self,
@@ -312,39 +294,21 @@ impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
                 }
                 flow
             };
-        for_each_intersection(self.tree, ray, ends, t_far, |found| {
+        for_each_intersection(self.bodies.tree, ray, ends, t_far, |found| {
             body(found.row as u32, found, &mut t_far)
         });
-        let rows = self.rows();
-        if !ended.get() && !self.capsules.is_empty() {
-            let own = ends.map(|end| match rows.row(end) {
-                Some(BodyRow::Capsule(row)) => Some(row.capsule),
-                _ => None,
-            });
-            let first = t_far;
-            body_tree::for_each_intersection(self.capsules, ray, own, first, |found| {
-                let row = CapsuleRow::at(self.capsules, found.row, ray, found.root.t);
-                body(rows.hit(BodyRow::Capsule(row)), found, &mut t_far)
-            });
-        }
-        if !ended.get() && !self.ellipsoids.is_empty() {
-            let own = ends.map(|end| match rows.row(end) {
-                Some(BodyRow::Ellipsoid(row)) => Some(row),
-                _ => None,
-            });
-            let first = t_far;
-            body_tree::for_each_intersection(self.ellipsoids, ray, own, first, |found| {
-                body(rows.hit(BodyRow::Ellipsoid(found.row)), found, &mut t_far)
-            });
-        }
-        if !ended.get() && !self.cones.is_empty() {
-            let own = ends.map(|end| match rows.row(end) {
-                Some(BodyRow::Cone(row)) => Some(row),
-                _ => None,
-            });
-            let first = t_far;
-            body_tree::for_each_intersection(self.cones, ray, own, first, |found| {
-                body(rows.hit(BodyRow::Cone(found.row)), found, &mut t_far)
+        let rows = self.bodies.rows();
+        for kind in BodyKind::ALL {
+            if ended.get() || rows.count(kind) == 0 {
+                continue;
+            }
+            let of_kind = |end: BodyRow| (end.kind == kind).then_some(end.row);
+            let (own, first) = (ends.map(|end| rows.row(end).and_then(of_kind)), t_far);
+            with_tree!(self.bodies, kind, |tree| {
+                body_tree::for_each_intersection(tree, ray, own, first, |found| {
+                    let hit = rows.hit(row_at(tree, found.row, ray, found.root.t));
+                    body(hit, found, &mut t_far)
+                });
             });
         }
     }
@@ -376,65 +340,49 @@ impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
         {
             return Ordering::Equal;
         }
-        let [(first, a), (second, b)] = [a, b].map(|fragment| self.distance(ray, fragment));
+        let [first, second] = [a, b].map(|fragment| self.closest_root(ray, fragment));
         let gap = first.t - second.t;
         if gap.abs() > first.error + second.error {
             return gap.total_cmp(&0.0);
         }
         *exact += 1;
-        exact::compare(ray, &a, &b)
+        self.distance(ray, &first, a).compare(&self.distance(ray, &second, b))
     }
 
-    /// The center and the radius of the sphere whose surface is hit; `None` if it is that of a cylinder. In molecules drawn with sticks the ends
-    /// of these coincide with atoms and with each other.
-    fn sphere_at(&self, ray: &ExactRay, fragment: &Fragment) -> Option<(DVec3, f64)> {
-        let capsule = match self.rows().row(fragment.hit)? {
-            BodyRow::Sphere(row) => return Some(self.tree.spheres.exact(row)),
-            BodyRow::Capsule(row) => self.capsules.body(row.capsule),
-            BodyRow::Ellipsoid(_) | BodyRow::Cone(_) => return None,
+    /// The sphere whose surface is hit; `None` if there is none.
+    fn sphere_at(&self, ray: &ExactRay, fragment: &Fragment) -> Option<Sphere> {
+        let row = self.bodies.rows().row(fragment.hit)?;
+        let part = match row.kind {
+            BodyKind::Sphere => Part::Body,
+            _ => self.bodies.decide(ray, row)?.part,
         };
-        match capsules::intersect(ray, &capsule)?.part {
-            Part::End(end) => Some((capsule.ends[end], capsule.radius)),
-            Part::Body => None,
-        }
+        self.bodies.sphere_of(row, part)
     }
 
-    /// Returns the distance of a body with its closest bound, and its definition.
-    fn distance(&self, ray: &ExactRay, fragment: &Fragment) -> (Root, Distance) {
+    /// Returns the distance of a body with its closest bound. One without error is a given number: a bound, or 0 where the ray
+    /// starts on a body.
+    fn closest_root(&self, ray: &ExactRay, fragment: &Fragment) -> Root {
         let number = Root { error: 0.0, ..fragment.root };
         if fragment.root.error == 0.0 {
-            return (number, Distance::Number(fragment.root.t));
+            return number;
         }
-        let sphere = match self.rows().row(fragment.hit) {
-            Some(BodyRow::Capsule(row)) => {
-                return (fragment.root, Distance::Capsule(self.capsules.body(row.capsule)));
-            }
-            Some(BodyRow::Ellipsoid(row)) => {
-                return (fragment.root, Distance::Ellipsoid(self.ellipsoids.body(row)));
-            }
-            Some(BodyRow::Cone(row)) => {
-                return (fragment.root, Distance::Cone(self.cones.body(row)));
-            }
-            Some(BodyRow::Sphere(row)) => row,
-            None => return (number, Distance::Number(fragment.root.t)),
-        };
-        let (center, radius) = self.tree.spheres.exact(sphere);
-        match confirm_closely(ray, center, radius, || false) {
-            Some(root) if root.error > 0.0 => (root, Distance::Hit(center, radius)),
-            // The sphere is hit where the ray starts.
-            _ => (number, Distance::Number(fragment.root.t)),
-        }
+        let row = self.bodies.rows().row(fragment.hit);
+        let hit = row.and_then(|row| self.bodies.decide(ray, row));
+        // Without error, the body is hit where the ray starts.
+        hit.map(|hit| hit.root).filter(|root| root.error > 0.0).unwrap_or(number)
+    }
+
+    /// Returns the distance of a body without rounding.
+    fn distance(&self, ray: &ExactRay, root: &Root, fragment: &Fragment) -> Quotient {
+        self.bodies.distance(ray, root, self.bodies.rows().row(fragment.hit))
     }
 
     /// The place of a hit among those at the same distance.
-    fn place(&self, hit: u32) -> (u8, u32) {
-        match self.rows().row(hit) {
-            None if hit == MISS => (0, 0),
-            Some(BodyRow::Sphere(row)) => (1, self.tree.spheres.id[row]),
-            Some(BodyRow::Capsule(row)) => (2, self.capsules.ids()[row.capsule]),
-            Some(BodyRow::Ellipsoid(row)) => (3, self.ellipsoids.ids()[row]),
-            Some(BodyRow::Cone(row)) => (4, self.cones.ids()[row]),
-            None => (5, 0),
+    fn place(&self, hit: u32) -> (u32, BodyKind, u32) {
+        match self.bodies.rows().row(hit) {
+            None if hit == MISS => (0, BodyKind::Sphere, 0),
+            Some(row) => (1, row.kind, self.bodies.id(row)),
+            None => (2, BodyKind::Sphere, 0),
         }
     }
 }

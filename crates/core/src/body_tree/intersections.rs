@@ -1,6 +1,6 @@
 //! All bodies of one kind that one ray intersects, not only the first.
 
-use super::{BodyTree, FilterRay, Shape};
+use super::{BodyHit, BodyTree, FilterRay, Shape};
 use crate::bvh::{Intersection, STACK, Search, walk};
 use crate::lanes::set_bits;
 use crate::ray::ExactRay;
@@ -55,7 +55,7 @@ impl<S: Shape, V: FnMut(Intersection) -> ControlFlow<(), f32>> Search
                 continue;
             }
             let body = self.tree.body(row);
-            let Some(root) = body.intersect(self.ray) else { continue };
+            let Some(BodyHit { root, .. }) = body.intersect(self.ray) else { continue };
             let inside = body.contains(self.ray.origin);
             match (self.visit)(Intersection { row, root, inside }) {
                 ControlFlow::Continue(t_far) => self.t_far = t_far,

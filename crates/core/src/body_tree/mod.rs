@@ -2,16 +2,23 @@
 //!
 //! They are traced after the spheres, in trees of their own, so that scenes of spheres do not pay for them.
 
+mod body;
+mod crossing;
 mod filter_ray;
 mod intersections;
 
+pub(crate) use body::Body;
+pub use body::Sphere;
+pub use crossing::{BodyHit, Doubt, Line, Part, Side};
+pub(crate) use crossing::{first_ahead, normal_or_against, sign};
 pub use filter_ray::FilterRay;
 pub(crate) use filter_ray::{cross, magnitude};
 pub(crate) use intersections::for_each_intersection;
 
+use crate::body_rows::BodyKind;
 use crate::bvh::builders::{Builder, Item, build_around};
 use crate::bvh::{Beam, Bounds, Bvh};
-use crate::intersect::Root;
+use crate::exact::Quotient;
 use crate::lanes::F32x8;
 use crate::ray::ExactRay;
 use crate::slabs::MARGIN;
@@ -19,12 +26,17 @@ use crate::spheres::LEAF;
 use glam::{DVec3, Vec3};
 use std::fmt::Debug;
 
-/// A kind of convex body.
-pub trait Shape: Copy + Debug {
+/// A kind of convex body: its columns, its bounds, and the terms of which a hit is decided. A surface without inside is one, too.
+pub trait Shape: Copy + Debug + PartialEq {
+    /// The kind.
+    const KIND: BodyKind;
+
     /// A body from which a tree is built.
     type Item: Copy + Debug;
     /// The columns of [`LEAF`] bodies side by side.
     type Block: Copy + Debug;
+    /// A line and a body, in double precision with bounds.
+    type Line: Line;
 
     /// A block without bodies: no ray may hit any.
     const EMPTY: Self::Block;
@@ -44,12 +56,70 @@ pub trait Shape: Copy + Debug {
     /// Returns whether a point is inside the body, not on its surface, in double precision.
     fn contains(&self, point: DVec3) -> bool;
 
-    /// Decides whether and where a ray hits the body, as arithmetic without rounding would.
-    fn intersect(&self, ray: &ExactRay) -> Option<Root>;
+    /// Returns whether none of its numbers is infinite or NaN.
+    fn is_finite(&self) -> bool;
 
     /// Returns a bit for each body of a block that a ray may hit no farther than `t_max`, and distances before which it does
     /// not.
     fn may_hit(ray: &FilterRay, block: &Self::Block, t_max: f32) -> (u32, F32x8);
+
+    /// Returns whether a ray enters the body at its origin, and the part of the surface there, for an origin that is on the surface within its own
+    /// rounding ([`ExactRay::origin_error`]); `None` if it is elsewhere.
+    fn enters_at_origin(&self, ray: &ExactRay) -> Option<(bool, Part)>;
+
+    /// Returns the line of a ray; `None` if it misses the body.
+    ///
+    /// # Errors
+    ///
+    /// Fails where double precision cannot decide.
+    fn line(&self, ray: &ExactRay) -> Result<Option<Self::Line>, Doubt>;
+
+    /// Returns where a ray hits the body, without rounding; `None` if it does not. The ray's origin is taken as exact, all numbers are
+    /// finite.
+    fn exact_hit(&self, ray: &ExactRay) -> Option<(Quotient, Part)>;
+
+    /// Returns the distance at which a line leaves the body, likewise; `None` if it misses it or leaves it before the origin.
+    fn exact_exit(&self, ray: &ExactRay) -> Option<Quotient>;
+
+    /// The sphere whose surface a part of the surface is; `None` if there is none. Spheres of other bodies may coincide with it.
+    fn end_sphere(&self, _: Part) -> Option<Sphere> {
+        None
+    }
+
+    /// Which of the hits of a body one at a distance of a ray is, of a kind with more than one ([`BodyKind::hits`]).
+    fn half_at(&self, _: &ExactRay, _: f64) -> usize {
+        0
+    }
+
+    /// The outward unit normal at a point of the surface, which need not be there by more than rounding; 0 where there is none.
+    fn normal_at(&self, point: DVec3) -> DVec3;
+
+    /// Returns the point of the surface where a ray hits the body, and the unit normal there: outward, or against the ray where the body is thinner
+    /// than rounding.
+    fn surface_at(&self, ray: &ExactRay, t: f64) -> (DVec3, DVec3);
+
+    /// A sphere that stands for the body, or for one of its halves ([`BodyKind::hits`]), where only its place and size count.
+    fn like_sphere(&self, _: usize) -> Sphere {
+        let [low, high] = self.extent();
+        Sphere { center: low.midpoint(high), radius: (high - low).max_element() / 2.0 }
+    }
+
+    /// Decides whether and where a ray hits the body, as arithmetic without rounding would.
+    ///
+    /// Outside, that is where it enters; inside, where it leaves. A body is closed: a ray that only touches it hits. Where the origin is on the
+    /// surface the direction decides: a ray that leaves misses, one that enters hits the far side, and one that runs along a
+    /// face hits its edge. On the surface is exactly so, or for an origin that was rounded itself ([`ExactRay::origin_error`])
+    /// within that rounding; then a ray that enters hits at once. Zero directions, and anything infinite or NaN, miss.
+    #[inline(always)]
+    fn intersect(&self, ray: &ExactRay) -> Option<BodyHit> {
+        crossing::intersect(ray, self)
+    }
+
+    /// Returns the distance at which a line leaves the body, ahead of its origin, which is on the surface or inside, within
+    /// rounding; 0 if it has left it.
+    fn exit_distance(&self, ray: &ExactRay) -> f64 {
+        crossing::exit_distance(ray, self)
+    }
 }
 
 /// Bodies of one kind, and the tree over them.
@@ -174,3 +244,6 @@ impl<S: Shape> BodyTree<S> {
         })
     }
 }
+
+#[cfg(test)]
+pub(crate) mod tests;

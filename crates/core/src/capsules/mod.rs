@@ -1,37 +1,22 @@
 //! Capsules, all points within a radius of a line segment: cylinders with round ends, in columns, and a tree over them.
 //!
-//! Hits are as exact as those of spheres: see [`intersect`].
+//! Hits are as exact as those of spheres.
 
+mod capsule;
+mod exact;
 mod filter;
 mod intersect;
 
-pub use crate::capsule::{Capsule, Part};
-pub use intersect::{CapsuleHit, exit_distance, intersect};
+pub use capsule::Capsule;
+pub use intersect::CapsuleLine;
 
-use crate::body_tree::{BodyTree, FilterRay, Shape};
-use crate::intersect::Root;
+use crate::body_rows::BodyKind;
+use crate::body_tree::{BodyTree, Doubt, FilterRay, Part, Shape, Sphere, normal_or_against};
+use crate::exact::Quotient;
 use crate::lanes::F32x8;
 use crate::ray::ExactRay;
 use crate::spheres::LEAF;
 use glam::{DVec3, Vec3};
-
-/// A half of a capsule: each has a number as a hit ([`BodyRows`](crate::body_rows::BodyRows)).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct CapsuleRow {
-    /// Row of the capsule.
-    pub capsule: usize,
-    /// The half of the axis: 0 about the first end, 1 about the second.
-    pub half: usize,
-}
-
-impl CapsuleRow {
-    /// The row of a hit on a capsule at a distance of a ray.
-    pub(crate) fn at(capsules: &Capsules, capsule: usize, ray: &ExactRay, t: f64) -> Self {
-        let body = capsules.body(capsule);
-        let along = body.normal(ray.at_from(body.ends[0], t)).1;
-        Self { capsule, half: usize::from(along > 0.5) }
-    }
-}
 
 /// The columns of [`LEAF`] capsules side by side.
 #[repr(C, align(64))]
@@ -58,8 +43,11 @@ pub struct CapsuleItem {
 pub type Capsules = BodyTree<Capsule>;
 
 impl Shape for Capsule {
+    const KIND: BodyKind = BodyKind::Capsule;
+
     type Item = CapsuleItem;
     type Block = CapsuleBlock;
+    type Line = CapsuleLine;
 
     const EMPTY: CapsuleBlock =
         CapsuleBlock { ends: [[[0.0; LEAF]; 3]; 2], radius: [f32::NAN; LEAF] };
@@ -91,13 +79,56 @@ impl Shape for Capsule {
         (from - axis * along).length_squared() < self.radius * self.radius
     }
 
-    fn intersect(&self, ray: &ExactRay) -> Option<Root> {
-        intersect(ray, self).map(|hit| hit.root)
+    fn is_finite(&self) -> bool {
+        self.ends.into_iter().all(DVec3::is_finite) && self.radius.is_finite()
     }
 
     #[inline(always)]
     fn may_hit(ray: &FilterRay, block: &CapsuleBlock, t_max: f32) -> (u32, F32x8) {
         filter::may_hit(ray, block, t_max)
+    }
+
+    #[inline(always)]
+    fn enters_at_origin(&self, ray: &ExactRay) -> Option<(bool, Part)> {
+        intersect::enters_at_origin(ray, self)
+    }
+
+    #[inline(always)]
+    fn line(&self, ray: &ExactRay) -> Result<Option<CapsuleLine>, Doubt> {
+        CapsuleLine::new(ray, self)
+    }
+
+    fn exact_hit(&self, ray: &ExactRay) -> Option<(Quotient, Part)> {
+        exact::hit(ray, self)
+    }
+
+    fn normal_at(&self, point: DVec3) -> DVec3 {
+        self.normal(point - self.ends[0]).0
+    }
+
+    fn surface_at(&self, ray: &ExactRay, t: f64) -> (DVec3, DVec3) {
+        let (normal, along) = self.normal(ray.at_from(self.ends[0], t));
+        let normal = normal_or_against(ray, normal);
+        (self.ends[0].lerp(self.ends[1], along) + normal * self.radius, normal)
+    }
+
+    fn like_sphere(&self, half: usize) -> Sphere {
+        Sphere { center: self.ends[half], radius: self.radius }
+    }
+
+    fn exact_exit(&self, ray: &ExactRay) -> Option<Quotient> {
+        exact::exit(ray, self)
+    }
+
+    fn end_sphere(&self, part: Part) -> Option<Sphere> {
+        match part {
+            Part::End(end) => Some(Sphere { center: self.ends[end], radius: self.radius }),
+            Part::Body => None,
+        }
+    }
+
+    fn half_at(&self, ray: &ExactRay, t: f64) -> usize {
+        usize::from(self.normal(ray.at_from(self.ends[0], t)).1 > 0.5)
     }
 }
 

@@ -1,13 +1,16 @@
-//! Cones in columns, and a tree over them. Hits are as exact as those of spheres: see [`intersect`].
+//! Cones in columns, and a tree over them. Hits are as exact as those of spheres: see [`Shape::intersect`].
 
+mod cone;
+mod exact;
 mod filter;
 mod intersect;
 
-pub use crate::cone::{Cone, Face};
-pub use intersect::{exit_distance, intersect};
+pub use cone::{Cone, Face};
 
-use crate::body_tree::{BodyTree, FilterRay, Shape};
-use crate::intersect::Root;
+use crate::body_rows::BodyKind;
+use crate::body_tree::{BodyTree, Doubt, FilterRay, Part, Shape, first_ahead, normal_or_against};
+use crate::bounded::Bounded;
+use crate::exact::Quotient;
 use crate::lanes::F32x8;
 use crate::ray::ExactRay;
 use crate::spheres::LEAF;
@@ -86,8 +89,11 @@ impl ConeItem {
 pub type Cones = BodyTree<Cone>;
 
 impl Shape for Cone {
+    const KIND: BodyKind = BodyKind::Cone;
+
     type Item = ConeItem;
     type Block = ConeBlock;
+    type Line = [Bounded; 2];
 
     const EMPTY: ConeBlock =
         ConeBlock { apex: [[0.0; LEAF]; 3], base: [[0.0; LEAF]; 3], radius: [f32::NAN; LEAF] };
@@ -127,13 +133,41 @@ impl Shape for Cone {
         side < 0.0 && base < 0.0
     }
 
-    fn intersect(&self, ray: &ExactRay) -> Option<Root> {
-        intersect(ray, self)
+    fn is_finite(&self) -> bool {
+        [self.apex, self.base].into_iter().all(DVec3::is_finite) && self.radius.is_finite()
     }
 
     #[inline(always)]
     fn may_hit(ray: &FilterRay, block: &ConeBlock, t_max: f32) -> (u32, F32x8) {
         filter::may_hit(ray, block, t_max)
+    }
+
+    #[inline(always)]
+    fn enters_at_origin(&self, ray: &ExactRay) -> Option<(bool, Part)> {
+        intersect::enters_at_origin(ray, self)
+    }
+
+    #[inline(always)]
+    fn line(&self, ray: &ExactRay) -> Result<Option<[Bounded; 2]>, Doubt> {
+        intersect::crossings(ray, self)
+    }
+
+    fn exact_hit(&self, ray: &ExactRay) -> Option<(Quotient, Part)> {
+        exact::crossings(ray, self).and_then(first_ahead).map(|t| (t, Part::Body))
+    }
+
+    fn normal_at(&self, point: DVec3) -> DVec3 {
+        self.normal(point - self.apex)
+    }
+
+    fn surface_at(&self, ray: &ExactRay, t: f64) -> (DVec3, DVec3) {
+        let from = self.onto_surface(ray.at_from(self.apex, t));
+        (self.apex + from, normal_or_against(ray, self.normal(from)))
+    }
+
+    fn exact_exit(&self, ray: &ExactRay) -> Option<Quotient> {
+        let [_, leave] = exact::crossings(ray, self)?;
+        (leave.sign() > 0).then_some(leave)
     }
 }
 

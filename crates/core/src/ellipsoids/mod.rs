@@ -1,14 +1,17 @@
-//! Ellipsoids in columns, and a tree over them. Hits are as exact as those of spheres: see [`intersect`].
+//! Ellipsoids in columns, and a tree over them. Hits are as exact as those of spheres: see [`Shape::intersect`].
 
+mod ellipsoid;
+mod exact;
 mod filter;
 mod intersect;
 mod inverse;
 
-pub use crate::ellipsoid::Ellipsoid;
-pub use intersect::{exit_distance, intersect};
+pub use ellipsoid::Ellipsoid;
 
-use crate::body_tree::{BodyTree, FilterRay, Shape};
-use crate::intersect::Root;
+use crate::body_rows::BodyKind;
+use crate::body_tree::{BodyTree, Doubt, FilterRay, Part, Shape, normal_or_against};
+use crate::bounded::Bounded;
+use crate::exact::Quotient;
 use crate::lanes::F32x8;
 use crate::ray::ExactRay;
 use crate::spheres::LEAF;
@@ -90,8 +93,11 @@ impl EllipsoidItem {
 pub type Ellipsoids = BodyTree<Ellipsoid>;
 
 impl Shape for Ellipsoid {
+    const KIND: BodyKind = BodyKind::Ellipsoid;
+
     type Item = EllipsoidItem;
     type Block = EllipsoidBlock;
+    type Line = [Bounded; 2];
 
     const EMPTY: EllipsoidBlock = EllipsoidBlock {
         center: [[0.0; LEAF]; 3],
@@ -128,13 +134,41 @@ impl Shape for Ellipsoid {
         self.to_unit(point - self.center).length_squared() < 1.0
     }
 
-    fn intersect(&self, ray: &ExactRay) -> Option<Root> {
-        intersect(ray, self)
+    fn is_finite(&self) -> bool {
+        self.center.is_finite() && self.to_unit.iter().all(|row| row.is_finite())
     }
 
     #[inline(always)]
     fn may_hit(ray: &FilterRay, block: &EllipsoidBlock, t_max: f32) -> (u32, F32x8) {
         filter::may_hit(ray, block, t_max)
+    }
+
+    #[inline(always)]
+    fn enters_at_origin(&self, ray: &ExactRay) -> Option<(bool, Part)> {
+        intersect::enters_at_origin(ray, self)
+    }
+
+    #[inline(always)]
+    fn line(&self, ray: &ExactRay) -> Result<Option<[Bounded; 2]>, Doubt> {
+        intersect::crossings(ray, self)
+    }
+
+    fn exact_hit(&self, ray: &ExactRay) -> Option<(Quotient, Part)> {
+        exact::hit(ray, self).map(|t| (t, Part::Body))
+    }
+
+    fn normal_at(&self, point: DVec3) -> DVec3 {
+        self.normal(point - self.center)
+    }
+
+    fn surface_at(&self, ray: &ExactRay, t: f64) -> (DVec3, DVec3) {
+        let from = self.onto_surface(ray.at_from(self.center, t));
+        (self.center + from, normal_or_against(ray, self.normal(from)))
+    }
+
+    fn exact_exit(&self, ray: &ExactRay) -> Option<Quotient> {
+        // From inside, and otherwise as close to the surface as can be.
+        exact::hit(ray, self)
     }
 }
 

@@ -6,14 +6,14 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 /// A whole number times a power of two.
 #[derive(Clone, Debug)]
-pub(super) struct Dyadic {
+pub(crate) struct Dyadic {
     mantissa: BigInt,
     exponent: i64,
 }
 
 impl Dyadic {
     /// A finite number, exactly.
-    pub(super) fn new(x: f64) -> Self {
+    pub(crate) fn new(x: f64) -> Self {
         let bits = x.to_bits();
         let biased = (bits >> 52 & 0x7ff) as i64;
         let fraction = bits & ((1 << 52) - 1);
@@ -26,7 +26,7 @@ impl Dyadic {
     }
 
     /// -1, 0 or 1.
-    pub(super) fn sign(&self) -> i32 {
+    pub(crate) fn sign(&self) -> i32 {
         match self.mantissa.sign() {
             Sign::Minus => -1,
             Sign::NoSign => 0,
@@ -35,7 +35,7 @@ impl Dyadic {
     }
 
     /// Times itself.
-    pub(super) fn square(&self) -> Self {
+    pub(crate) fn square(&self) -> Self {
         self * self
     }
 
@@ -65,9 +65,9 @@ fn times_power(x: f64, exponent: i64) -> f64 {
 
 /// A number `sign sqrt(radicand)`; the sign is -1, 0 or 1, the radicand not negative.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SignedRoot<'a> {
-    pub(super) sign: i32,
-    pub(super) radicand: &'a Dyadic,
+pub(crate) struct SignedRoot<'a> {
+    pub(crate) sign: i32,
+    pub(crate) radicand: &'a Dyadic,
 }
 
 /// The nearest number of double precision to `(b + root) / a`, which is positive and in the range
@@ -131,12 +131,12 @@ impl Neg for Dyadic {
 }
 
 /// Scalar product.
-pub(super) fn dot(a: &[Dyadic; 3], b: &[Dyadic; 3]) -> Dyadic {
+pub(crate) fn dot(a: &[Dyadic; 3], b: &[Dyadic; 3]) -> Dyadic {
     &(&(&a[0] * &b[0]) + &(&a[1] * &b[1])) + &(&a[2] * &b[2])
 }
 
 /// Vector product.
-pub(super) fn cross(a: &[Dyadic; 3], b: &[Dyadic; 3]) -> [Dyadic; 3] {
+pub(crate) fn cross(a: &[Dyadic; 3], b: &[Dyadic; 3]) -> [Dyadic; 3] {
     std::array::from_fn(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         &(&a[j] * &b[k]) - &(&a[k] * &b[j])

@@ -2,14 +2,15 @@
 //! depths added up in that order.
 
 use glam::{DQuat, DVec3, Vec3};
-use spherule_core::internals::body_rows::{BodyRow, BodyRows};
+use spherule_core::internals::bodies::BodyTrees;
+use spherule_core::internals::body_rows::BodyKind;
 use spherule_core::internals::body_tree::Shape;
 use spherule_core::internals::bvh::builders::{Builder, build};
 use spherule_core::internals::bvh::{Bvh, Tree};
 use spherule_core::internals::capsules::{Capsule, CapsuleItem, Capsules};
 use spherule_core::internals::cones::{Cone, ConeItem, Cones};
 use spherule_core::internals::ellipsoids::{Ellipsoid, EllipsoidItem, Ellipsoids};
-use spherule_core::internals::exact::{self, Distance};
+use spherule_core::internals::exact::{self, Distance, Quotient};
 use spherule_core::internals::random::Random;
 use spherule_core::internals::ray::{ExactRay, MISS};
 use spherule_core::internals::spheres::Spheres;
@@ -31,32 +32,23 @@ enum Body {
 
 impl Body {
     /// The distance at which a ray hits it; `None` if it does not, or if it starts inside of it and it is translucent.
-    fn distance(&self, ray: &ExactRay, is_opaque: bool) -> Option<Distance> {
+    fn distance(&self, ray: &ExactRay, is_opaque: bool) -> Option<Quotient> {
+        fn of<S: Shape>(body: &S, ray: &ExactRay, is_opaque: bool) -> Option<Quotient> {
+            if !is_opaque && body.contains(ray.origin) {
+                return None;
+            }
+            body.exact_hit(ray).map(|(t, _)| t)
+        }
         match *self {
             Self::Sphere(center, radius) => {
                 if !is_opaque && exact::is_inside(ray.origin, center, radius) {
                     return None;
                 }
-                exact::hit(ray, center, radius).map(|_| Distance::Hit(center, radius))
+                exact::hit(ray, center, radius).map(|_| Distance::Hit(center, radius).value(ray))
             }
-            Self::Capsule(capsule) => {
-                if !is_opaque && capsule.contains(ray.origin) {
-                    return None;
-                }
-                exact::capsule_hit(ray, &capsule).map(|_| Distance::Capsule(capsule))
-            }
-            Self::Ellipsoid(ellipsoid) => {
-                if !is_opaque && ellipsoid.contains(ray.origin) {
-                    return None;
-                }
-                exact::ellipsoid_hit(ray, &ellipsoid).map(|_| Distance::Ellipsoid(ellipsoid))
-            }
-            Self::Cone(cone) => {
-                if !is_opaque && cone.contains(ray.origin) {
-                    return None;
-                }
-                exact::cone_hit(ray, &cone).map(|_| Distance::Cone(cone))
-            }
+            Self::Capsule(body) => of(&body, ray, is_opaque),
+            Self::Ellipsoid(body) => of(&body, ray, is_opaque),
+            Self::Cone(body) => of(&body, ray, is_opaque),
         }
     }
 }
@@ -64,7 +56,6 @@ impl Body {
 /// Bodies on a coarse lattice, so that many coincide, touch, and are at equal distances.
 struct Scene {
     bodies: Vec<Body>,
-    rows: BodyRows,
     spheres: Spheres,
     capsules: Capsules,
     ellipsoids: Ellipsoids,
@@ -124,21 +115,25 @@ impl Scene {
         });
         let of_items = of_items.into_iter().flatten();
         let bodies = of_spheres.chain(of_sticks).chain(of_items).chain(of_cones).collect();
-        let (capsule_count, ellipsoid_count) = (sticks.len(), items.len());
-        let rows =
-            BodyRows { spheres: rows.len(), capsules: capsule_count, ellipsoids: ellipsoid_count };
-        (Self { bodies, rows, spheres, capsules, ellipsoids, cones }, bvh)
+        (Self { bodies, spheres, capsules, ellipsoids, cones }, bvh)
     }
 
-    /// The place of the body of a hit in the user's order.
-    fn place(&self, hit: u32) -> Option<usize> {
-        let BodyRows { spheres, capsules, ellipsoids } = self.rows;
-        Some(match self.rows.row(hit)? {
-            BodyRow::Sphere(row) => self.spheres.id[row] as usize,
-            BodyRow::Capsule(row) => spheres + self.capsules.ids()[row.capsule] as usize,
-            BodyRow::Ellipsoid(row) => spheres + capsules + self.ellipsoids.ids()[row] as usize,
-            BodyRow::Cone(row) => spheres + capsules + ellipsoids + self.cones.ids()[row] as usize,
-        })
+    /// Its bodies in their trees.
+    fn trees<'a>(&'a self, bvh: &'a Bvh) -> BodyTrees<'a> {
+        BodyTrees {
+            tree: Tree { bvh, spheres: &self.spheres },
+            capsules: Some(&self.capsules),
+            ellipsoids: Some(&self.ellipsoids),
+            cones: Some(&self.cones),
+        }
+    }
+
+    /// The kind of the body of a hit, and the body's place in the user's order.
+    fn place(trees: &BodyTrees, hit: u32) -> Option<(BodyKind, usize)> {
+        let (rows, row) = (trees.rows(), trees.rows().row(hit)?);
+        let before = BodyKind::ALL.into_iter().take_while(|&kind| kind < row.kind);
+        let before: usize = before.map(|kind| rows.count(kind)).sum();
+        Some((row.kind, before + trees.id(row) as usize))
     }
 
     fn opacity(place: usize) -> f64 {
@@ -151,13 +146,11 @@ impl Scene {
         bvh: &'a Bvh,
         factor: f64,
     ) -> TranslucentBodies<'a, impl Fn(u32) -> OpticalDepth + 'a> {
+        let bodies = self.trees(bvh);
         TranslucentBodies {
-            tree: Tree { bvh, spheres: &self.spheres },
-            capsules: &self.capsules,
-            ellipsoids: &self.ellipsoids,
-            cones: &self.cones,
+            bodies,
             depth: move |hit| {
-                let place = self.place(hit).expect("a hit on a body");
+                let (_, place) = Self::place(&bodies, hit).expect("a hit on a body");
                 OpticalDepth::of_opacity(factor * Self::opacity(place))
             },
         }
@@ -166,16 +159,16 @@ impl Scene {
     /// The body at which a ray ends.
     fn oracle(&self, ray: &ExactRay, threshold: OpticalDepth) -> Option<usize> {
         let depth = |place| OpticalDepth::of_opacity(Self::opacity(place));
-        let mut hits: Vec<(usize, Distance)> = (0..self.bodies.len())
+        let mut hits: Vec<(usize, Quotient)> = (0..self.bodies.len())
             .filter_map(|place| {
                 Some((place, self.bodies[place].distance(ray, depth(place).is_opaque())?))
             })
             .collect();
         // A stable sort: of equal distances the first in the user's order stays first.
-        hits.sort_by(|a, b| exact::compare(ray, &a.1, &b.1));
+        hits.sort_by(|a, b| a.1.compare(&b.1));
         let mut sum = OpticalDepth::NONE;
-        let end = |&&(place, _): &&(usize, Distance)| {
-            sum = sum.plus(depth(place));
+        let end = |(place, _): &&(usize, Quotient)| {
+            sum = sum.plus(depth(*place));
             sum >= threshold
         };
         hits.iter().find(end).map(|hit| hit.0)
@@ -210,20 +203,12 @@ fn rays_end_where_all_hits_in_their_exact_order_end_them() {
             let attenuated = AttenuatedRay { ray, ends: [MISS; 2], threshold, known };
             let (SeenBody { t, hit, .. }, _) = bodies.closest(&attenuated, &mut fragments);
             let expected = scene.oracle(&ray, threshold);
-            assert_eq!(scene.place(hit), expected, "{ray:?}");
+            let found = Scene::place(&bodies.bodies, hit);
+            assert_eq!(found.map(|(_, place)| place), expected, "{ray:?}");
             assert_eq!(t.is_finite(), expected.is_some());
             assert_eq!(bodies.occluded(&attenuated).0, expected.is_some(), "{ray:?}");
-            match expected {
-                Some(place) => {
-                    let BodyRows { spheres, capsules, ellipsoids } = scene.rows;
-                    let kinds = [spheres, capsules, ellipsoids];
-                    let mut before = 0;
-                    let is_before = |count: &&usize| {
-                        before += **count;
-                        before <= place
-                    };
-                    ends[kinds.iter().take_while(is_before).count()] += 1;
-                }
+            match found {
+                Some((kind, _)) => ends[kind as usize] += 1,
                 None => misses += 1,
             }
             if expected.is_some() {

@@ -2,10 +2,10 @@
 
 use super::workspace::{BATCH, Workspace};
 use crate::lanes::{Doubles, F64x8, MAX_LANES, Mask, U32x16, load_doubles, look_up, widen};
-use crate::ray::{Columns3, ExactRay, GROUND, MISS};
+use crate::ray::{Columns3, GROUND, MISS};
 use crate::spheres::{LEAF, Spheres};
 use crate::vec3::Vec3;
-use crate::world::{Ground, World, WorldBody};
+use crate::world::{Ground, World};
 use glam::DVec3;
 
 /// Rows that are computed at once.
@@ -250,31 +250,10 @@ fn chord_exit(entry: Vec3<F64x8>, direction: Vec3<F64x8>) -> Vec3<F64x8> {
 /// Computes the point and the normal of a hit on a body that is no sphere.
 fn compute_other_body(world: &World, work: &mut Workspace, row: usize) {
     let (ray, t) = (work.rays.exact(row), work.hits.t[row]);
-    let (point, normal) = match world.body(work.hits.sphere[row]) {
-        None | Some(WorldBody::Sphere(_)) => return,
-        Some(WorldBody::Stick(stick)) => {
-            let (normal, along) = stick.normal(ray.at_from(stick.ends[0], t));
-            let normal = against_unless_known(&ray, normal);
-            (stick.ends[0].lerp(stick.ends[1], along) + normal * stick.radius, normal)
-        }
-        Some(WorldBody::Ellipsoid(body)) => {
-            let from_center = body.onto_surface(ray.at_from(body.center, t));
-            let normal = against_unless_known(&ray, body.normal(from_center));
-            (body.center + from_center, normal)
-        }
-        Some(WorldBody::Cone(body)) => {
-            let from_apex = body.onto_surface(ray.at_from(body.apex, t));
-            let normal = against_unless_known(&ray, body.normal(from_apex));
-            (body.apex + from_apex, normal)
-        }
-    };
+    let Some(body) = world.body(work.hits.sphere[row]) else { return };
+    let Some((point, normal)) = world.trees().surface_at(body, &ray, t) else { return };
     work.surface.point.set(row, point.as_vec3());
     work.surface.normal.set(row, normal);
-}
-
-/// Returns a normal, or that against the ray for a body that is thinner than rounding: nothing else is known.
-fn against_unless_known(ray: &ExactRay, normal: DVec3) -> DVec3 {
-    if normal == DVec3::ZERO { -ray.direction.normalize() } else { normal }
 }
 
 /// Corrects the hits on spheres that are cut: points of caps, and exits from spheres entered by a cap.
@@ -290,8 +269,10 @@ fn compute_cut_sphere(world: &World, work: &mut Workspace, row: usize) {
         work.surface.normal.set(row, normal);
         return;
     }
-    let Some(WorldBody::Sphere(sphere)) = world.body(hit) else { return };
-    let (center, radius) = world.spheres.exact(sphere);
+    if hit as usize >= world.spheres.len() {
+        return;
+    }
+    let (center, radius) = world.spheres.exact(hit as usize);
     if own == hit && world.cut.divides(center, radius) {
         let normal = exit_normal(ray.at_from(center, t), ray.direction.normalize());
         work.surface.point.set(row, (center + normal * radius).as_vec3());

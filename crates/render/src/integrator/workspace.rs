@@ -16,9 +16,6 @@ use super::probe_batch::ProbeBatch;
 use super::shading_row::SurfaceRow;
 use super::shadow_queue::ShadowQueue;
 use super::surface::{Surface, chord_length, exit_distance};
-use crate::capsules;
-use crate::cones;
-use crate::ellipsoids;
 use crate::film::{Region, View};
 use crate::lanes::{F32x16, MAX_LANES, Packing, U32x16, set_bits};
 use crate::ray::{ExactRay, GROUND, Hits, MISS, Rays};
@@ -26,7 +23,7 @@ use crate::sampling::{SampleRow, Sampler, SamplerRow, SamplerState, SamplerState
 use crate::scene::Rgb;
 use crate::trace::{self, Chosen};
 use crate::vec3 as row;
-use crate::world::{World, WorldBody};
+use crate::world::World;
 use glam::Vec3;
 use std::mem::swap;
 use std::ops::Range;
@@ -306,11 +303,9 @@ impl Workspace {
         let direction = direction.as_dvec3();
         let origin = self.surface.point.row(row).as_dvec3();
         let ray = ExactRay { origin, direction, origin_error: 0.0 };
-        match world.body(self.hits.sphere[row]) {
-            Some(WorldBody::Stick(stick)) => return capsules::exit_distance(&ray, &stick),
-            Some(WorldBody::Ellipsoid(body)) => return ellipsoids::exit_distance(&ray, &body),
-            Some(WorldBody::Cone(body)) => return cones::exit_distance(&ray, &body),
-            _ => (),
+        let body = world.body(self.hits.sphere[row]);
+        if let Some(exit) = body.and_then(|body| world.trees().exit_distance(body, &ray)) {
+            return exit;
         }
         let (center, radius) = world.spheres.exact(self.hits.sphere[row] as usize);
         if world.cut.divides(center, radius) {

@@ -1,7 +1,7 @@
 //! Depth range of the bodies of a scene.
 
-use crate::body_tree::Shape;
-use crate::world::{World, WorldBody};
+use crate::body_tree::Sphere;
+use crate::world::World;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -76,20 +76,9 @@ fn body_count(world: &World) -> usize {
 
 /// Returns a sphere in place of a body, by the number of its hits.
 fn sphere_of(world: &World, hit: usize) -> (DVec3, f64) {
-    match world.body(hit as u32) {
-        Some(WorldBody::Stick(stick)) => {
-            (stick.ends[(hit - world.spheres.len()) % 2], stick.radius)
-        }
-        Some(WorldBody::Ellipsoid(body)) => around(&body),
-        Some(WorldBody::Cone(body)) => around(&body),
-        Some(WorldBody::Sphere(_)) | None => world.spheres.exact(hit),
-    }
-}
-
-/// Returns a sphere that is as wide as the box around a body.
-fn around<S: Shape>(body: &S) -> (DVec3, f64) {
-    let [low, high] = body.extent();
-    (low.midpoint(high), (high - low).max_element() / 2.0)
+    let body = world.body(hit as u32).expect("a hit on a body");
+    let Sphere { center, radius } = world.trees().like_sphere(body);
+    (center, radius)
 }
 
 fn rows(world: &World, run: usize) -> Range<usize> {

@@ -2,8 +2,10 @@
 
 use super::appearance::{Colors, Column};
 use super::{Appearance, Materials, Transform, World};
-use crate::body_rows::{BodyRow, BodyRows};
+use crate::bodies::BodyTrees;
+use crate::body_rows::{BodyKind, BodyRow, BodyRows};
 use crate::body_tree::{BodyTree, Shape};
+use crate::bvh::Tree;
 use crate::bvh::builders::Builder;
 use crate::capsules::{Capsule, CapsuleItem};
 use crate::cones::{Cone, ConeItem};
@@ -29,15 +31,6 @@ pub struct VisibleBodies<S: Shape> {
     pub tree: BodyTree<S>,
     /// Their rows among all.
     pub row: Vec<u32>,
-}
-
-/// A body that is hit.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum WorldBody {
-    Sphere(usize),
-    Stick(Capsule),
-    Ellipsoid(Ellipsoid),
-    Cone(Cone),
 }
 
 impl<S: Shape> Default for WorldBodies<S> {
@@ -79,9 +72,9 @@ impl<S: Shape> WorldBodies<S> {
         self.visible.as_ref().map_or(&self.all, |visible| &visible.tree)
     }
 
-    /// Returns the row among all of a row of [`WorldBodies::seen`].
-    pub(crate) fn row_of_seen(&self, row: usize) -> usize {
-        self.visible.as_ref().map_or(row, |visible| visible.row[row] as usize)
+    /// Returns the rows among all of those of [`WorldBodies::seen`], if these are fewer.
+    fn rows_of_seen(&self) -> Option<&[u32]> {
+        self.visible.as_ref().map(|visible| visible.row.as_slice())
     }
 }
 
@@ -131,19 +124,50 @@ fn hides(scene: &Scene, middle: DVec3) -> bool {
 }
 
 impl World {
+    /// Returns all bodies.
+    #[inline(always)]
+    pub(crate) fn trees(&self) -> BodyTrees<'_> {
+        BodyTrees {
+            tree: Tree { bvh: &self.bvh, spheres: &self.spheres },
+            capsules: Some(&self.sticks.all),
+            ellipsoids: Some(&self.ellipsoids.all),
+            cones: Some(&self.cones.all),
+        }
+    }
+
+    /// Returns the bodies that the camera sees.
+    pub(crate) fn visible_trees(&self) -> BodyTrees<'_> {
+        let visible = self.camera_visible.as_ref();
+        let (bvh, spheres) =
+            visible.map_or((&self.bvh, &self.spheres), |visible| (&visible.bvh, &visible.spheres));
+        BodyTrees {
+            tree: Tree { bvh, spheres },
+            capsules: Some(self.sticks.seen()),
+            ellipsoids: Some(self.ellipsoids.seen()),
+            cones: Some(self.cones.seen()),
+        }
+    }
+
+    /// Returns the row among all bodies of a row of [`World::visible_trees`].
+    pub(crate) fn row_of_visible(&self, body: BodyRow) -> BodyRow {
+        let rows = match body.kind {
+            BodyKind::Sphere => self.camera_visible.as_ref().map(|visible| &*visible.row),
+            BodyKind::Capsule => self.sticks.rows_of_seen(),
+            BodyKind::Ellipsoid => self.ellipsoids.rows_of_seen(),
+            BodyKind::Cone => self.cones.rows_of_seen(),
+        };
+        BodyRow { row: rows.map_or(body.row, |rows| rows[body.row] as usize), ..body }
+    }
+
     /// Returns the numbers of hits on bodies.
     #[inline(always)]
     pub(crate) fn body_rows(&self) -> BodyRows {
-        BodyRows {
-            spheres: self.spheres.len(),
-            capsules: self.sticks.len(),
-            ellipsoids: self.ellipsoids.len(),
-        }
+        self.trees().rows()
     }
 
     /// Returns the number of hits on bodies, of which each half of a stick is one.
     pub(crate) fn body_count(&self) -> usize {
-        self.body_rows().hit(BodyRow::Cone(self.cones.len())) as usize
+        self.body_rows().all_hits()
     }
 
     /// Returns whether there are bodies other than spheres.
@@ -154,38 +178,15 @@ impl World {
 
     /// Returns the body of a hit; `None` for the ground, and for none.
     #[inline(always)]
-    pub(crate) fn body(&self, hit: u32) -> Option<WorldBody> {
-        Some(match self.body_rows().row(hit)? {
-            BodyRow::Sphere(row) => WorldBody::Sphere(row),
-            BodyRow::Capsule(row) => WorldBody::Stick(self.sticks.all.body(row.capsule)),
-            BodyRow::Ellipsoid(row) => WorldBody::Ellipsoid(self.ellipsoids.all.body(row)),
-            BodyRow::Cone(row) => WorldBody::Cone(self.cones.all.body(row)),
-        })
+    pub(crate) fn body(&self, hit: u32) -> Option<BodyRow> {
+        self.body_rows().row(hit)
     }
 
-    /// Returns the number of sticks of a kind of material.
-    pub(super) fn sticks_of(&self, kind: MaterialKind) -> u64 {
-        let first = self.spheres.len();
-        let is_kind =
-            |&stick: &usize| self.appearance.material.row(first + 2 * stick).kind() == kind;
-        (0..self.sticks.len()).filter(is_kind).count() as u64
-    }
-
-    /// Returns the number of ellipsoids of a kind of material.
-    pub(super) fn ellipsoids_of(&self, kind: MaterialKind) -> u64 {
-        self.rows_of(kind, BodyRow::Ellipsoid(0), self.ellipsoids.len())
-    }
-
-    /// Returns the number of cones of a kind of material.
-    pub(super) fn cones_of(&self, kind: MaterialKind) -> u64 {
-        self.rows_of(kind, BodyRow::Cone(0), self.cones.len())
-    }
-
-    /// Returns how many of some bodies, from the first one on, have a kind of material.
-    fn rows_of(&self, kind: MaterialKind, first: BodyRow, count: usize) -> u64 {
-        let first = self.body_rows().hit(first) as usize;
-        let is_kind = |&row: &usize| self.appearance.material.row(first + row).kind() == kind;
-        (0..count).filter(is_kind).count() as u64
+    /// Returns how many bodies of a kind, which is not that of spheres, have a kind of material.
+    pub(super) fn count_of(&self, kind: BodyKind, material: MaterialKind) -> u64 {
+        let rows = self.body_rows();
+        let hits = (rows.first(kind)..).step_by(kind.hits()).take(rows.count(kind));
+        hits.filter(|&hit| self.appearance.material.row(hit).kind() == material).count() as u64
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::World;
 use super::parts::OmittedSpheres;
+use crate::body_rows::BodyKind;
 use crate::shade::MaterialKind;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -61,9 +62,10 @@ impl Features {
         }
         Self {
             spheres_by_kind,
-            sticks_by_kind: MaterialKind::ALL.map(|kind| world.sticks_of(kind)),
-            ellipsoids_by_kind: MaterialKind::ALL.map(|kind| world.ellipsoids_of(kind)),
-            cones_by_kind: MaterialKind::ALL.map(|kind| world.cones_of(kind)),
+            sticks_by_kind: MaterialKind::ALL.map(|kind| world.count_of(BodyKind::Capsule, kind)),
+            ellipsoids_by_kind: MaterialKind::ALL
+                .map(|kind| world.count_of(BodyKind::Ellipsoid, kind)),
+            cones_by_kind: MaterialKind::ALL.map(|kind| world.count_of(BodyKind::Cone, kind)),
             vanished: omitted.vanished,
             cut_away: omitted.cut_away,
             cuts: world.cut.len() as u64,

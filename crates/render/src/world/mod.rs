@@ -26,7 +26,6 @@ mod transform;
 mod visibility;
 
 pub use appearance::{Appearance, Colors, Column};
-pub(crate) use bodies::WorldBody;
 pub use bodies::{VisibleBodies, WorldBodies};
 pub use camera::{Camera, CameraTerms};
 pub use camera_visible::CameraVisible;
@@ -56,7 +55,7 @@ pub(crate) use parts::{OmittedSpheres, Parts};
 pub use transform::Transform;
 pub use visibility::Visibility;
 
-use crate::body_rows::BodyRow;
+use crate::body_rows::{BodyKind, BodyRows};
 use crate::bvh::Bvh;
 use crate::bvh::builders::Builder;
 use crate::capsules::Capsule;
@@ -102,10 +101,8 @@ pub struct World {
     /// Cones, which have rows after those.
     #[doc(hidden)]
     pub cones: WorldBodies<Cone>,
-    /// Number of sticks of the scene, those that slices remove included.
-    scene_sticks: u32,
-    /// Number of ellipsoids of the scene, likewise.
-    scene_ellipsoids: u32,
+    /// Numbers of bodies of the scene other than spheres, those that slices remove included.
+    scene_bodies: BodyRows,
     /// Planes at which spheres are cut.
     #[doc(hidden)]
     pub cut: Cut,
@@ -277,8 +274,12 @@ impl World {
             sticks,
             ellipsoids,
             cones,
-            scene_sticks: scene.sticks.len() as u32,
-            scene_ellipsoids: scene.ellipsoids.len() as u32,
+            scene_bodies: BodyRows([
+                0,
+                scene.sticks.len(),
+                scene.ellipsoids.len(),
+                scene.cones.len(),
+            ]),
             cut,
             camera_visible,
             coincident: Vec::new(),
@@ -344,8 +345,7 @@ impl World {
             sticks: WorldBodies::default(),
             ellipsoids: WorldBodies::default(),
             cones: WorldBodies::default(),
-            scene_sticks: 0,
-            scene_ellipsoids: 0,
+            scene_bodies: BodyRows::default(),
             cut: Cut::default(),
             camera_visible: None,
             coincident: Vec::new(),
@@ -402,18 +402,14 @@ impl World {
     pub(crate) fn id_of(&self, hit: u32) -> u32 {
         let given = self.omitted();
         let spheres = self.spheres.len() as u64 + given.cut_away + given.vanished + given.hidden;
-        match self.body_rows().row(hit) {
-            Some(BodyRow::Sphere(row)) => self.spheres.id[row],
-            Some(BodyRow::Capsule(row)) => spheres as u32 + self.sticks.all.ids()[row.capsule],
-            Some(BodyRow::Ellipsoid(row)) => {
-                spheres as u32 + self.scene_sticks + self.ellipsoids.all.ids()[row]
-            }
-            Some(BodyRow::Cone(row)) => {
-                let before = spheres as u32 + self.scene_sticks + self.scene_ellipsoids;
-                before + self.cones.all.ids()[row]
-            }
-            None => hit,
+        let Some(body) = self.body(hit) else { return hit };
+        let id = self.trees().id(body);
+        if body.kind == BodyKind::Sphere {
+            return id;
         }
+        let before = BodyKind::ALL.into_iter().take_while(|&kind| kind < body.kind);
+        let before: usize = before.map(|kind| self.scene_bodies.count(kind)).sum();
+        spheres as u32 + before as u32 + id
     }
 
     /// Returns the outward normal of the surface of a hit at a point of it; `None` for a miss.
@@ -421,14 +417,12 @@ impl World {
         match (hit, &self.ground) {
             (GROUND, Some(ground)) => Some(ground.normal.as_vec3()),
             (MISS | GROUND, _) => None,
-            _ => Some(match self.body(hit)? {
-                WorldBody::Sphere(row) => (point - self.spheres.center(row)).normalize_or_zero(),
-                WorldBody::Stick(stick) => {
-                    stick.normal(point.as_dvec3() - stick.ends[0]).0.as_vec3()
-                }
-                WorldBody::Ellipsoid(body) => body.normal(point.as_dvec3() - body.center).as_vec3(),
-                WorldBody::Cone(body) => body.normal(point.as_dvec3() - body.apex).as_vec3(),
-            }),
+            _ => {
+                let body = self.body(hit)?;
+                let other = self.trees().normal_at(body, point.as_dvec3());
+                let sphere = || (point - self.spheres.center(body.row)).normalize_or_zero();
+                Some(other.map_or_else(sphere, glam::DVec3::as_vec3))
+            }
         }
     }
 

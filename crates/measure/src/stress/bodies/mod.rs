@@ -12,6 +12,7 @@ use serde::Serialize;
 use spherule_core::internals::bodies::{BodyTrees, closest, occluded};
 use spherule_core::internals::body_tree::{BodyTree, Shape};
 use spherule_core::internals::bvh::builders::Builder;
+use spherule_core::internals::bvh::{Bvh, Tree};
 use spherule_core::internals::capsules::{Capsule, CapsuleItem, Capsules};
 use spherule_core::internals::cones::{Cone, ConeItem};
 use spherule_core::internals::ellipsoids::{Ellipsoid, EllipsoidItem};
@@ -101,9 +102,6 @@ trait Kind: Shape {
     fn body(self) -> Body;
 
     fn trees<'a>(none: BodyTrees<'a>, tree: &'a BodyTree<Self>) -> BodyTrees<'a>;
-
-    /// Number of hits of a body.
-    const HITS: usize = 1;
 }
 
 /// A coordinate or a size: of one of some magnitudes.
@@ -132,7 +130,6 @@ fn other_place(than: DVec3, on_lattice: bool, random: &mut Random) -> DVec3 {
 
 impl Kind for Capsule {
     const NAME: &'static str = "sticks";
-    const HITS: usize = 2;
 
     fn item(id: u32, on_lattice: bool, random: &mut Random) -> CapsuleItem {
         let start = place(on_lattice, random);
@@ -161,7 +158,7 @@ impl Kind for Capsule {
     }
 
     fn trees<'a>(none: BodyTrees<'a>, tree: &'a Capsules) -> BodyTrees<'a> {
-        BodyTrees { capsules: tree, ..none }
+        BodyTrees { capsules: Some(tree), ..none }
     }
 }
 
@@ -282,8 +279,8 @@ fn run_scene<K: Kind>(count: usize, random: &mut Random) -> BodyReport {
         let direction = if direction == glam::Vec3::ZERO { glam::Vec3::X } else { direction };
         rays.push(origin.as_vec3(), direction, MISS);
     }
-    let (spheres, capsules) = (Spheres::default(), Capsules::default());
-    let none = BodyTrees { spheres: &spheres, capsules: &capsules, ellipsoids: None, cones: None };
+    let (bvh, spheres) = (Bvh::default(), Spheres::default());
+    let none = BodyTrees::of_spheres(Tree { bvh: &bvh, spheres: &spheres });
     let trees = K::trees(none, &tree);
     let (mut hits, mut any) = (Hits::with_capacity(count), Hits::with_capacity(count));
     let exact = closest(trees, &rays, &mut hits) + occluded(trees, &rays, &mut any);
@@ -301,7 +298,7 @@ fn run_scene<K: Kind>(count: usize, random: &mut Random) -> BodyReport {
             None => report.wrong_hits += u64::from(found != MISS || occluded),
             Some(_) if found == MISS || !occluded => report.wrong_hits += 1,
             Some((t, id)) => {
-                report.wrong_bodies += u64::from(tree.ids()[found as usize / K::HITS] != id);
+                report.wrong_bodies += u64::from(tree.ids()[found as usize / K::KIND.hits()] != id);
                 let t = to_double(&t);
                 report.wrong_distances += u64::from((hits.t[row] - t).abs() > DISTANCE * t);
             }

@@ -10,32 +10,14 @@
 //! and `b^2 - a c = H^2 E`, `E = r^2 |v x N|^2 - H (v.N)^2`, `N = d x F`. Its height, in units of the axis, is `(f + t g)/H`: it is between 0 and 1
 //! within the cone. All these are sums of products of dyadic numbers.
 
-use super::Quotient;
-use super::dyadic::{Dyadic, cross, dot};
-use crate::cone::Cone;
+use super::Cone;
+use crate::exact::{Dyadic, Quotient, cross, dot};
 use crate::ray::ExactRay;
 use glam::DVec3;
 use std::cmp::Ordering;
 
-/// Returns the distance at which a ray hits a cone, in units of the direction's length: the nearest double; `None` if it
-/// does not hit it. The ray's origin is taken as exact, all numbers are finite.
-pub fn cone_hit(ray: &ExactRay, cone: &Cone) -> Option<f64> {
-    first(ray, cone).map(|root| root.nearest())
-}
-
-/// Returns the distance at which a line leaves a cone, likewise; `None` if it misses it or leaves it before the origin.
-pub fn cone_exit(ray: &ExactRay, cone: &Cone) -> Option<f64> {
-    let [_, leave] = crossings(ray, cone)?;
-    (leave.sign() > 0).then(|| leave.nearest())
-}
-
-/// Returns the distance of the hit.
-pub(super) fn first(ray: &ExactRay, cone: &Cone) -> Option<Quotient> {
-    crossings(ray, cone)?.into_iter().find(|t| t.sign() > 0)
-}
-
 /// The distances at which a line enters and leaves a cone; `None` if it misses it.
-fn crossings(ray: &ExactRay, cone: &Cone) -> Option<[Quotient; 2]> {
+pub(super) fn crossings(ray: &ExactRay, cone: &Cone) -> Option<[Quotient; 2]> {
     let exact = |v: DVec3| v.to_array().map(Dyadic::new);
     let (origin, d) = (exact(ray.origin), exact(ray.direction));
     let (apex, base) = (exact(cone.apex), exact(cone.base));

@@ -4,20 +4,13 @@
 //! `M d`: sums of products, so dyadic numbers as well. Distances along the ray stay the same, so the rest is the encounter with a sphere of
 //! radius 1.
 
-use super::dyadic::{Dyadic, dot};
-use super::{Encounter, Quotient};
-use crate::ellipsoid::Ellipsoid;
+use super::Ellipsoid;
+use crate::exact::{Dyadic, Encounter, Quotient, dot};
 use crate::ray::ExactRay;
 use glam::DVec3;
 
-/// Returns the distance at which a ray hits an ellipsoid, in units of the direction's length: the nearest double; `None` if it
-/// does not hit it. The ray's origin is taken as exact, all numbers are finite.
-pub fn ellipsoid_hit(ray: &ExactRay, ellipsoid: &Ellipsoid) -> Option<f64> {
-    first(ray, ellipsoid).map(|root| root.nearest())
-}
-
-/// Returns the distance of the hit.
-pub(super) fn first(ray: &ExactRay, ellipsoid: &Ellipsoid) -> Option<Quotient> {
+/// Returns the distance at which a ray hits an ellipsoid; `None` if it does not.
+pub(super) fn hit(ray: &ExactRay, ellipsoid: &Ellipsoid) -> Option<Quotient> {
     let exact = |v: DVec3| v.to_array().map(Dyadic::new);
     let (origin, center, direction) =
         (exact(ray.origin), exact(ellipsoid.center), exact(ray.direction));
@@ -27,6 +20,5 @@ pub(super) fn first(ray: &ExactRay, ellipsoid: &Ellipsoid) -> Option<Quotient> {
     let encounter =
         Encounter::between(&to_unit(&from_center), &to_unit(&direction), &Dyadic::new(1.0));
     let sign = encounter.root()?;
-    let Encounter { a, b, discriminant, .. } = encounter;
-    Some(Quotient { p: b, sign, q: discriminant, a })
+    Some(encounter.distance(sign))
 }

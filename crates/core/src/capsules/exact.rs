@@ -5,40 +5,26 @@
 //! Lagrange's identity. Where it enters, `y = (F + t d).v` says whether it enters the capsule there (`0 <= y <= v.v`), or on
 //! the sphere about an end, if at all: a line that is in the cylinder at an end's plane is in that end's sphere.
 
-use super::dyadic::{Dyadic, SignedRoot, cross, dot};
-use super::{Encounter, Quotient, sign_of_sum};
-use crate::capsule::{Capsule, Part};
+use super::Capsule;
+use crate::body_tree::{Part, Side};
+use crate::exact::{Dyadic, Encounter, Quotient, SignedRoot, cross, dot, sign_of_sum};
 use crate::ray::ExactRay;
 
-/// The distance at which a ray hits a capsule.
-#[derive(Clone, Copy, Debug)]
-pub struct CapsuleRoot {
-    /// The nearest double, in units of the direction's length, more than 0.
-    pub t: f64,
-    /// The part of the surface that is hit.
-    pub part: Part,
-}
-
-/// Returns where a ray hits a capsule; `None` if it does not. The ray's origin is taken as exact, all numbers are finite.
-pub fn capsule_hit(ray: &ExactRay, capsule: &Capsule) -> Option<CapsuleRoot> {
-    first(ray, capsule).map(|(root, part)| CapsuleRoot { t: root.nearest(), part })
-}
-
-/// Returns the distance at which a line leaves a capsule, likewise; `None` if it misses it or leaves it before the origin.
-pub fn capsule_exit(ray: &ExactRay, capsule: &Capsule) -> Option<f64> {
-    let (leave, _) = Line::new(ray, capsule).crossing(1)?;
-    (leave.sign() > 0).then(|| leave.nearest())
-}
-
-/// Returns the distance of the hit, and the part that is hit: where the line enters if that is ahead of the origin, or
-/// else where it leaves if that is.
-pub(super) fn first(ray: &ExactRay, capsule: &Capsule) -> Option<(Quotient, Part)> {
+/// Returns where a ray hits a capsule: where its line enters it if that is ahead of the origin, or else where it leaves it if that
+/// is.
+pub(super) fn hit(ray: &ExactRay, capsule: &Capsule) -> Option<(Quotient, Part)> {
     let line = Line::new(ray, capsule);
-    let enter = line.crossing(-1)?;
+    let enter = line.crossing(Side::Enter)?;
     if enter.0.sign() > 0 {
         return Some(enter);
     }
-    line.crossing(1).filter(|leave| leave.0.sign() > 0)
+    line.crossing(Side::Leave).filter(|leave| leave.0.sign() > 0)
+}
+
+/// Returns where the line leaves the capsule, ahead of the origin.
+pub(super) fn exit(ray: &ExactRay, capsule: &Capsule) -> Option<Quotient> {
+    let (leave, _) = Line::new(ray, capsule).crossing(Side::Leave)?;
+    (leave.sign() > 0).then_some(leave)
 }
 
 /// A line and a capsule, exactly.
@@ -66,22 +52,22 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// Where the line enters (`sign` is -1) or leaves (1) the capsule; `None` if it misses it.
-    fn crossing(&self, sign: i32) -> Option<(Quotient, Part)> {
+    /// Where the line enters or leaves the capsule; `None` if it misses it.
+    fn crossing(&self, side: Side) -> Option<(Quotient, Part)> {
         let (from, d, v) = (&self.from_start, &self.direction, &self.axis);
         let length2 = dot(v, v);
         if dot(d, d).sign() == 0 {
             return None;
         }
         if length2.sign() == 0 {
-            return self.end(0, sign);
+            return self.end(0, side);
         }
         let (n, m) = (cross(d, v), cross(from, v));
         let (a, along) = (dot(&n, &n), dot(d, v));
         if a.sign() == 0 {
             let outside = &dot(&m, &m) - &(&self.radius2 * &length2);
-            let end = usize::from((along.sign() < 0) == (sign < 0));
-            return if outside.sign() > 0 { None } else { self.end(end, sign) };
+            let end = usize::from((along.sign() < 0) == (side == Side::Enter));
+            return if outside.sign() > 0 { None } else { self.end(end, side) };
         }
         let apart = dot(from, &n);
         let discriminant = &length2 * &(&(&a * &self.radius2) - &apart.square());
@@ -92,23 +78,22 @@ impl<'a> Line<'a> {
         // Sign of the height over an end's plane, at the start's end `y`, at the other `y - v.v`.
         let (start, slope) = (dot(from, v), &p * &along);
         let radicand = &along.square() * &discriminant;
-        let root = SignedRoot { sign: sign * along.sign(), radicand: &radicand };
+        let root = SignedRoot { sign: side.sign() * along.sign(), radicand: &radicand };
         let zero = SignedRoot { sign: 0, ..root };
-        let side = |start: &Dyadic| sign_of_sum(&(&(&a * start) + &slope), root, zero);
-        if side(&start) < 0 {
-            return self.end(0, sign);
+        let over = |start: &Dyadic| sign_of_sum(&(&(&a * start) + &slope), root, zero);
+        if over(&start) < 0 {
+            return self.end(0, side);
         }
-        if side(&(&start - &length2)) > 0 {
-            return self.end(1, sign);
+        if over(&(&start - &length2)) > 0 {
+            return self.end(1, side);
         }
-        Some((Quotient { p, sign, q: discriminant, a }, Part::Body))
+        Some((Quotient { p, sign: side.sign(), q: discriminant, a }, Part::Body))
     }
 
     /// Where the line enters or leaves the sphere about an end.
-    fn end(&self, end: usize, sign: i32) -> Option<(Quotient, Part)> {
+    fn end(&self, end: usize, side: Side) -> Option<(Quotient, Part)> {
         let Capsule { ends, radius } = self.capsule;
-        let Encounter { a, b, discriminant, .. } = Encounter::new(self.ray, ends[end], *radius);
-        let root = Quotient { p: b, sign, q: discriminant, a };
-        (root.q.sign() >= 0).then_some((root, Part::End(end)))
+        let sphere = Encounter::new(self.ray, ends[end], *radius);
+        sphere.meets().then(|| (sphere.distance(side.sign()), Part::End(end)))
     }
 }

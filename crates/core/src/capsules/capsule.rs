@@ -11,15 +11,6 @@ pub struct Capsule {
     pub radius: f64,
 }
 
-/// A part of a capsule's surface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    /// The cylinder between the ends.
-    Body,
-    /// The half sphere about the first or the second end.
-    End(usize),
-}
-
 impl Capsule {
     /// The outward unit normal at a point of the surface, given relative to the first end, and where on the axis the point
     /// belongs, from 0 to 1. The point need not be on the surface by more than rounding.
