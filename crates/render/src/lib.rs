@@ -1,14 +1,13 @@
-//! The renderer of Spherule: worlds, path tracing, films, and what is drawn over images.
+//! The renderer of Spherule: renders of worlds, their error, their files, and what is drawn over images.
 //!
 //! This is the implementation of the crate `spherule`, which has the public interface: use that. Anything here may
-//! change in any release. The modules, in the order of the data:
+//! change in any release. Worlds and the paths of light are `spherule-transport`'s; the modules here, in the order of
+//! the data:
 //!
 //! ```text
-//! sampling                    vocabulary
-//! world                       what kernels read
-//! trace, shade, integrator    one batch of paths
-//! film, noise, render         tiles, their error, and rounds over them
-//! layers, overlay             pictures
+//! noise, render, denoise      tiles, their error, and rounds over them
+//! layers, overlay, compose    pictures, and the scenes that they are of
+//! checkpoint, prepared, split files
 //! ```
 
 #![forbid(unsafe_code)]
@@ -30,22 +29,13 @@ pub use spherule_image::graphics;
 pub use spherule_image::{Image, atomic, color, image};
 pub use spherule_scene::{Scene, scene, settings};
 
-// Vocabulary: knows nothing of scenes.
-pub mod sampling;
-
-// The pipeline, in order.
-pub mod world;
-
-pub mod trace;
-
-pub mod integrator;
-pub mod shade;
+// Paths of light.
+pub use spherule_transport::{film, integrator, sampling, shade, trace, world};
 
 pub mod checkpoint;
 #[cfg(feature = "drawing")]
 pub mod compose;
 pub mod denoise;
-pub mod film;
 pub mod layers;
 pub mod noise;
 pub mod overlay;

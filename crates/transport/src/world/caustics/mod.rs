@@ -110,7 +110,7 @@ pub(crate) struct CasterPair {
 
 impl CausticCasters {
     /// Finds the specular spheres and emitters of a world, which is complete otherwise.
-    pub(super) fn find(world: &World) -> Self {
+    pub fn find(world: &World) -> Self {
         let emitters = emitters(world);
         let kinds = sampled_kinds(world);
         if emitters.is_empty() || kinds.is_empty() || !world.cut.is_empty() {

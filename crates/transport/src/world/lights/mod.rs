@@ -281,7 +281,7 @@ impl Lights {
 
 impl EmissiveSpheres {
     /// Finds the emissive spheres that are not cut; only BSDF samples find the light of the others.
-    pub(super) fn find(
+    pub(crate) fn find(
         spheres: &Spheres,
         cut: &Cut,
         appearance: &Appearance,

@@ -117,7 +117,7 @@ impl SeenLights {
     }
 
     /// Returns an image of a light if that is sampled for the pixel of a path.
-    pub(super) fn find(&self, job: &Job, path: usize, light: &SeenLight) -> Option<&LightImage> {
+    pub(crate) fn find(&self, job: &Job, path: usize, light: &SeenLight) -> Option<&LightImage> {
         let mut of_light = self.images.iter().filter(|image| image.light == *light);
         of_light.find(|image| image.reaches(self.pixels[path], job.filter.radius()))
     }

@@ -6,12 +6,15 @@ use serde::{Deserialize, Serialize};
 
 /// The saved state of a tile, without its sums.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct TileHeader {
-    pub(crate) samples: u32,
+pub struct TileHeader {
+    /// Samples of each pixel.
+    pub samples: u32,
     view: View,
     probed: bool,
-    pub(crate) probe_samples: u32,
-    pub(crate) probe_rays: u64,
+    /// Samples of each probe.
+    pub probe_samples: u32,
+    /// Rays of the probes.
+    pub probe_rays: u64,
     pilot: Option<Pilot>,
     chance: ChanceLight,
     /// Number of levels of each of its sums, in the order of [`Tile::columns`].
@@ -20,20 +23,20 @@ pub(crate) struct TileHeader {
 
 impl TileHeader {
     /// Returns whether the numbers are in range.
-    pub(crate) fn is_valid(&self) -> bool {
+    pub fn is_valid(&self) -> bool {
         self.chance.is_valid()
             && self.levels.iter().all(|&levels| (1..=LEVELS).contains(&usize::from(levels)))
     }
 
     /// Returns the number of levels of its pixels' sums.
-    pub(crate) fn levels(&self) -> u64 {
+    pub fn levels(&self) -> u64 {
         self.levels[..2].iter().map(|&levels| u64::from(levels)).sum()
     }
 }
 
 impl Film {
     /// Returns the headers of all tiles.
-    pub(crate) fn tile_headers(&self) -> Vec<TileHeader> {
+    pub fn tile_headers(&self) -> Vec<TileHeader> {
         let header = |tile: &Tile| TileHeader {
             samples: tile.samples,
             view: tile.view,
@@ -48,7 +51,7 @@ impl Film {
     }
 
     /// Restores all tiles, except for their sums. `headers` has one entry per tile.
-    pub(crate) fn restore_tiles(&mut self, headers: &[TileHeader], seed: u64) {
+    pub fn restore_tiles(&mut self, headers: &[TileHeader], seed: u64) {
         let density = Density::of(self.pixels());
         for (tile, header) in self.tiles.iter_mut().zip(headers) {
             (tile.samples, tile.view) = (header.samples, header.view);
@@ -68,12 +71,12 @@ impl Film {
 
 impl Tile {
     /// Returns all sums of the tile and of its probes, level by level and always in the same order.
-    pub(crate) fn columns(&self) -> impl Iterator<Item = &[f64]> {
+    pub fn columns(&self) -> impl Iterator<Item = &[f64]> {
         self.exact_sums().into_iter().flat_map(ExactSums::levels).map(|level| level.as_flattened())
     }
 
     /// Returns the sums for filling, in the same order.
-    pub(crate) fn columns_mut(&mut self) -> impl Iterator<Item = &mut [f64]> {
+    pub fn columns_mut(&mut self) -> impl Iterator<Item = &mut [f64]> {
         let levels = self.exact_sums_mut().into_iter().flat_map(ExactSums::levels_mut);
         levels.map(|level| level.as_flattened_mut())
     }

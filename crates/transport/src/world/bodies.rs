@@ -126,7 +126,7 @@ fn hides(scene: &Scene, middle: DVec3) -> bool {
 impl World {
     /// Returns all bodies.
     #[inline(always)]
-    pub(crate) fn trees(&self) -> BodyTrees<'_> {
+    pub fn trees(&self) -> BodyTrees<'_> {
         BodyTrees {
             tree: Tree { bvh: &self.bvh, spheres: &self.spheres },
             capsules: Some(&self.sticks.all),
@@ -166,7 +166,7 @@ impl World {
     }
 
     /// Returns the number of hits on bodies, of which each half of a stick is one.
-    pub(crate) fn body_count(&self) -> usize {
+    pub fn body_count(&self) -> usize {
         self.body_rows().all_hits()
     }
 
@@ -178,7 +178,7 @@ impl World {
 
     /// Returns the body of a hit; `None` for the ground, and for none.
     #[inline(always)]
-    pub(crate) fn body(&self, hit: u32) -> Option<BodyRow> {
+    pub fn body(&self, hit: u32) -> Option<BodyRow> {
         self.body_rows().row(hit)
     }
 

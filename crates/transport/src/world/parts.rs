@@ -13,19 +13,26 @@ use std::borrow::Cow;
 
 /// Spheres in the order of their tree, with coordinates and camera.
 #[derive(Clone, Debug)]
-pub(crate) struct Parts {
-    pub(crate) transform: Transform,
-    pub(crate) placement: Placement,
-    pub(crate) spheres: Spheres,
-    pub(crate) bvh: Bvh,
-    pub(crate) appearance: Appearance,
-    pub(crate) camera_visible: Option<CameraVisible>,
-    pub(crate) omitted: OmittedSpheres,
+pub struct Parts {
+    /// From the scene's coordinates to those of the tree.
+    pub transform: Transform,
+    /// The camera, in the scene's coordinates.
+    pub placement: Placement,
+    /// The spheres, in the order of the tree.
+    pub spheres: Spheres,
+    /// The tree.
+    pub bvh: Bvh,
+    /// Colors and materials of the spheres.
+    pub appearance: Appearance,
+    /// The spheres that the camera sees, if slices hide some.
+    pub camera_visible: Option<CameraVisible>,
+    /// The spheres that are not in the tree.
+    pub omitted: OmittedSpheres,
 }
 
 /// Numbers of spheres of a scene that are not in its world, by reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct OmittedSpheres {
+pub struct OmittedSpheres {
     /// Slices remove them completely.
     pub(crate) cut_away: u64,
     /// They vanish in single precision relative to the largest coordinate.
@@ -64,7 +71,7 @@ impl Parts {
     /// in pixels. Returns false if this needs the spheres in the user's coordinates, which no longer
     /// exist: a fitted camera depends on the picture's aspect, and the coordinate transform on a
     /// parallel camera's picture.
-    pub(crate) fn place(&mut self, scene: &Scene, from: [u32; 2]) -> Result<bool, WorldError> {
+    pub fn place(&mut self, scene: &Scene, from: [u32; 2]) -> Result<bool, WorldError> {
         check::check(scene)?;
         check::check_environment_memory(scene)?;
         let aspect = |[width, height]: [u32; 2]| f64::from(width) / f64::from(height);
@@ -80,7 +87,7 @@ impl Parts {
     }
 
     /// Returns whether spheres and camera have finite coordinates.
-    pub(crate) fn is_finite(&self) -> bool {
+    pub fn is_finite(&self) -> bool {
         let Placement { eye, axes, half_height, half_width, distance, reach } = self.placement;
         let vectors = [eye, axes.right, axes.up, axes.forward];
         let lengths = [half_height, half_width, distance, reach];
@@ -92,7 +99,7 @@ impl Parts {
 
 impl World {
     /// Returns the numbers of spheres of its scene that are not in the world.
-    pub(crate) fn omitted(&self) -> OmittedSpheres {
+    pub fn omitted(&self) -> OmittedSpheres {
         let features = &self.features;
         OmittedSpheres {
             cut_away: features.cut_away,

@@ -15,26 +15,26 @@ const ROUNDER: f32 = 3.0;
 
 /// Sums of the features of a pixel's samples: integers, so that they don't depend on the order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct FeatureSums {
+pub struct FeatureSums {
     albedo: [i32; 3],
     normal: [i32; 3],
     coverage: i32,
 }
 
-/// Means of the features of a pixel: see [`Features`](crate::layers::Features).
+/// Means of the features of a pixel: see `Features` of the layers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct MeanFeatures {
+pub struct MeanFeatures {
     /// Linear RGB.
-    pub(crate) albedo: [f32; 3],
+    pub albedo: [f32; 3],
     /// Mean unit normal on the side that is seen.
-    pub(crate) normal: [f32; 3],
+    pub normal: [f32; 3],
     /// Fraction of the rays that hit anything.
-    pub(crate) coverage: f32,
+    pub coverage: f32,
 }
 
 /// The features of a tile's pixels, and the samples that they are of.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct TileFeatures {
+pub struct TileFeatures {
     recorded: SampleSet,
     /// In the order of [`Tile::pixels`]; empty if all are 0.
     sums: Vec<FeatureSums>,
@@ -42,7 +42,7 @@ pub(crate) struct TileFeatures {
 
 /// A set of samples, by their indices below [`SAMPLES`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct SampleSet([u64; WORDS]);
+pub struct SampleSet([u64; WORDS]);
 
 const WORDS: usize = SAMPLES.div_ceil(u64::BITS) as usize;
 
@@ -59,7 +59,7 @@ impl FeatureSums {
     }
 
     /// Adds the same, of which each sample counts by a coverage from 0 to 1.
-    pub(crate) fn add(&mut self, albedo: [f32; 3], normal: [&[f32]; 3], coverages: &[f32]) {
+    pub fn add(&mut self, albedo: [f32; 3], normal: [&[f32]; 3], coverages: &[f32]) {
         for (row, &coverage) in coverages.iter().enumerate() {
             for channel in 0..3 {
                 self.albedo[channel] += in_units(coverage * albedo[channel]);
@@ -104,7 +104,7 @@ fn in_units(value: f32) -> i32 {
 
 impl SampleSet {
     /// Returns the set of the first `count` samples, at most [`SAMPLES`].
-    pub(crate) fn first(count: u32) -> Self {
+    pub fn first(count: u32) -> Self {
         let mut set = Self::default();
         set.insert(0..count);
         set
@@ -123,22 +123,22 @@ impl SampleSet {
     }
 
     /// Returns the samples of either set.
-    pub(crate) fn union(self, other: Self) -> Self {
+    pub fn union(self, other: Self) -> Self {
         Self(std::array::from_fn(|word| self.0[word] | other.0[word]))
     }
 
     /// Returns the samples that are not in the other set.
-    pub(crate) fn without(self, other: Self) -> Self {
+    pub fn without(self, other: Self) -> Self {
         Self(std::array::from_fn(|word| self.0[word] & !other.0[word]))
     }
 
     /// Returns whether a sample is in both sets.
-    pub(crate) fn overlaps(self, other: Self) -> bool {
+    pub fn overlaps(self, other: Self) -> bool {
         self.without(other) != self
     }
 
     /// Returns the set as ranges of consecutive samples, each of at most `most`, in order.
-    pub(crate) fn ranges(self, most: u32) -> impl Iterator<Item = Range<u32>> {
+    pub fn ranges(self, most: u32) -> impl Iterator<Item = Range<u32>> {
         let mut next = 0;
         std::iter::from_fn(move || {
             let start = (next..SAMPLES).find(|&sample| self.contains(sample))?;
@@ -156,13 +156,13 @@ impl SampleSet {
 
 impl TileFeatures {
     /// Returns the samples whose features are known.
-    pub(crate) fn recorded(&self) -> SampleSet {
+    pub fn recorded(&self) -> SampleSet {
         self.recorded
     }
 
     /// Adds samples; `sums` has those of each pixel, in the order of [`Tile::pixels`], or is empty if no ray hits
     /// anything.
-    pub(crate) fn add(&mut self, samples: Range<u32>, sums: &[FeatureSums]) {
+    pub fn add(&mut self, samples: Range<u32>, sums: &[FeatureSums]) {
         self.recorded.insert(samples);
         if self.sums.is_empty() {
             self.sums.extend_from_slice(sums);
@@ -172,13 +172,13 @@ impl TileFeatures {
     }
 
     /// Forgets all samples.
-    pub(crate) fn clear(&mut self) {
+    pub fn clear(&mut self) {
         *self = Self::default();
     }
 
     /// Returns the means of the pixels, in their order, over the samples of both, which have none in common. It does not
     /// end.
-    pub(crate) fn means_with(&self, other: &Self) -> impl Iterator<Item = MeanFeatures> {
+    pub fn means_with(&self, other: &Self) -> impl Iterator<Item = MeanFeatures> {
         let count = self.recorded.union(other.recorded).count();
         (0..).map(move |pixel| {
             let mut sums = self.sums.get(pixel).copied().unwrap_or_default();
@@ -190,7 +190,7 @@ impl TileFeatures {
 
 impl Film {
     /// Makes all tiles keep the features of the samples that are added from now on.
-    pub(crate) fn keep_features(&mut self) {
+    pub fn keep_features(&mut self) {
         self.tiles.par_iter_mut().for_each(|tile| {
             tile.features.get_or_insert_default();
         });
@@ -199,24 +199,24 @@ impl Film {
 
 impl Tile {
     /// Returns whether the features of these samples can be recorded.
-    pub(crate) fn records(samples: &Range<u32>) -> bool {
+    pub fn records(samples: &Range<u32>) -> bool {
         samples.end <= SAMPLES
     }
 
     /// Returns whether the tile keeps features.
-    pub(crate) fn keeps_features(&self) -> bool {
+    pub fn keeps_features(&self) -> bool {
         self.features.is_some()
     }
 
     /// Adds the features of samples, as [`TileFeatures::add`], if they are kept and can be recorded.
-    pub(crate) fn add_features(&mut self, samples: Range<u32>, sums: &[FeatureSums]) {
+    pub fn add_features(&mut self, samples: Range<u32>, sums: &[FeatureSums]) {
         if let Some(features) = self.features.as_mut().filter(|_| Self::records(&samples)) {
             features.add(samples, sums);
         }
     }
 
     /// Returns the features that are recorded.
-    pub(crate) fn features(&self) -> &TileFeatures {
+    pub fn features(&self) -> &TileFeatures {
         static NONE: TileFeatures =
             TileFeatures { recorded: SampleSet([0; WORDS]), sums: Vec::new() };
         self.features.as_ref().unwrap_or(&NONE)

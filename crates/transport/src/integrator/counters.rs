@@ -42,7 +42,7 @@ impl Counters {
     }
 
     /// Returns all counts.
-    pub(crate) fn all(&self) -> [u64; 8] {
+    pub fn all(&self) -> [u64; 8] {
         [
             self.skipped_samples,
             self.camera_rays,

@@ -21,7 +21,7 @@ pub struct CameraVisible {
 impl CameraVisible {
     /// Restores the spheres from rows of a world's spheres and the nodes over them. `None` if a row
     /// does not exist, or the nodes are not a tree.
-    pub(crate) fn of_rows(row: Vec<u32>, nodes: &[NodeRow], all: &Spheres) -> Option<Self> {
+    pub fn of_rows(row: Vec<u32>, nodes: &[NodeRow], all: &Spheres) -> Option<Self> {
         let mut spheres = Spheres::with_capacity(row.len());
         for &row in &row {
             let (row, id) = (row as usize, *all.id.get(row as usize)?);

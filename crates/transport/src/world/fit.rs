@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 /// The camera in the user's coordinates.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub(crate) struct Placement {
+pub struct Placement {
     /// Origin of rays.
     pub eye: DVec3,
     /// Unit axes of the picture: to the right, up, and into the scene.
@@ -27,7 +27,7 @@ pub(crate) struct Placement {
 
 /// Unit axes of the picture.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub(crate) struct Axes {
+pub struct Axes {
     pub right: DVec3,
     pub up: DVec3,
     pub forward: DVec3,

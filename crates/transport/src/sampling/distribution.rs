@@ -104,7 +104,7 @@ impl Distribution {
 
     /// Returns the index that a draw below 1 chooses.
     #[inline]
-    pub(super) fn find(&self, u: f32) -> usize {
+    pub fn find(&self, u: f32) -> usize {
         let slots = self.guide.len() - 1;
         let slot = (u * slots as f32) as usize;
         let (low, high) = (self.guide[slot] as usize, self.guide[slot + 1] as usize);

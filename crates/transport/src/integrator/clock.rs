@@ -54,7 +54,7 @@ impl Times {
     }
 
     /// Returns the time of the longest stage.
-    pub(crate) fn longest(&self) -> Duration {
+    pub fn longest(&self) -> Duration {
         self.0.into_iter().max().unwrap_or_default()
     }
 

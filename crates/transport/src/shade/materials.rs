@@ -74,7 +74,7 @@ pub struct MaterialId(u32);
 
 impl MaterialId {
     /// Number of a material, for files.
-    pub(crate) fn bits(self) -> u32 {
+    pub fn bits(self) -> u32 {
         self.0
     }
 
@@ -119,7 +119,8 @@ pub struct Materials {
 }
 
 impl Materials {
-    pub(crate) fn build(scene: &[NamedMaterial]) -> Self {
+    /// Returns the tables of a scene's materials.
+    pub fn build(scene: &[NamedMaterial]) -> Self {
         let mut tables = Self::default();
         for named in scene {
             let id = tables.add(named.material.surface());
@@ -155,7 +156,7 @@ impl Materials {
     }
 
     /// The material of a number that [`MaterialId::bits`] gave; `None` if there is none.
-    pub(crate) fn find(&self, bits: u32) -> Option<MaterialId> {
+    pub fn find(&self, bits: u32) -> Option<MaterialId> {
         let kind = *MaterialKind::ALL.get((bits >> MaterialId::ROW_BITS) as usize)?;
         let id = MaterialId(bits);
         let rows = match kind {
@@ -170,7 +171,7 @@ impl Materials {
     }
 
     /// The material in row `row` of the scene's list.
-    pub(crate) fn id(&self, row: u32) -> MaterialId {
+    pub fn id(&self, row: u32) -> MaterialId {
         self.ids.get(row as usize).copied().unwrap_or_default()
     }
 

@@ -10,7 +10,7 @@ use std::mem::take;
 /// The scene's spheres in world space.
 pub(super) struct WorldSpheres<'s> {
     /// Spheres in the user's order, without those that are cut away or vanish in single precision.
-    pub(super) spheres: Spheres,
+    pub spheres: Spheres,
     /// Materials and colors of all of the user's spheres.
     pub(super) appearance: SceneAppearance<'s>,
     /// Number of spheres that slices do not remove.

@@ -118,7 +118,7 @@ pub enum PixelSamples<'a> {
 
 impl Region {
     /// Returns the pixels of a region no larger than a tile, in the order of [`Tile::pixels`].
-    pub(crate) fn morton(self) -> impl Iterator<Item = (u32, u32)> {
+    pub fn morton(self) -> impl Iterator<Item = (u32, u32)> {
         MORTON
             .iter()
             .map(|&[x, y]| (u32::from(x), u32::from(y)))

@@ -119,7 +119,7 @@ impl SeenLight {
 impl LightImages {
     /// Finds the images of a world, which is complete otherwise: none without specular spheres, and none in
     /// parallel projection or with a near plane, where rays do not start on the lens.
-    pub(super) fn find(world: &World) -> Self {
+    pub(crate) fn find(world: &World) -> Self {
         let camera = &world.camera;
         let specular = !world.caustic_casters.is_empty();
         if camera.is_orthographic() || camera.near() > 0.0 || !specular {

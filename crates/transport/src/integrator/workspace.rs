@@ -146,7 +146,7 @@ impl Workspace {
     }
 
     /// Prepares for paths of pixels of some regions.
-    pub(crate) fn begin(&mut self, job: &Job, regions: impl Iterator<Item = Region>) {
+    pub fn begin(&mut self, job: &Job, regions: impl Iterator<Item = Region>) {
         self.seen_lights.begin(job, regions);
     }
 
@@ -226,7 +226,7 @@ impl Workspace {
 
     /// Returns the part of the light of a camera ray that its hit stands for; 0 if it hits nothing.
     #[inline]
-    pub(crate) fn coverage(&self, row: usize) -> f32 {
+    pub fn coverage(&self, row: usize) -> f32 {
         if self.hits.sphere[row] == MISS {
             return 0.0;
         }

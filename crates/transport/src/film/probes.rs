@@ -2,7 +2,7 @@
 //! equal renders.
 //!
 //! Samples of probes are no part of the picture: all their streams have random numbers of their own. So
-//! decisions that depend on probes are independent of the picture's own samples (see [`crate::noise`]).
+//! decisions that depend on probes are independent of the picture's own samples (see the module `noise` of the renderer).
 
 use super::{ChanceLight, ChanceVariance, Sums, Tile};
 use crate::color::Rgb;

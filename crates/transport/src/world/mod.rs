@@ -44,14 +44,14 @@ pub use device::{
 pub use environment::{
     Environment, Irradiance, PartBounds, Picture, Radiance, SkyLight, SkySamples,
 };
-pub(crate) use fit::Placement;
+pub use fit::Placement;
 pub use ground::Ground;
 pub(crate) use light_images::{LightImage, LightImages, SeenLight};
 pub(crate) use lights::MAX_MIDDLES;
 pub use lights::{
     Disc, LightRow, LightSample, LightView, Lights, Point, ROW, Receiver, ReceiverRow, Sun,
 };
-pub(crate) use parts::{OmittedSpheres, Parts};
+pub use parts::{OmittedSpheres, Parts};
 pub use transform::Transform;
 pub use visibility::Visibility;
 
@@ -82,7 +82,7 @@ pub struct World {
     #[doc(hidden)]
     pub transform: Transform,
     /// The camera in the user's coordinates.
-    pub(crate) placement: Placement,
+    pub placement: Placement,
     /// The spheres, in the order of the tree's leaves.
     #[doc(hidden)]
     pub spheres: Spheres,
@@ -247,7 +247,7 @@ impl World {
 
     /// Completes the spheres and their tree by all that follows from them and from the rest of the
     /// scene.
-    pub(crate) fn complete(scene: &Scene, parts: Parts) -> Self {
+    pub fn complete(scene: &Scene, parts: Parts) -> Self {
         let Parts { transform, placement, spheres, bvh, mut appearance, camera_visible, omitted } =
             parts;
         let materials = Materials::build(&scene.materials);
@@ -399,7 +399,7 @@ impl World {
 
     /// Returns the number of what is hit: of spheres, after them sticks, then ellipsoids, then cones, in the scene's order; other
     /// hits are unchanged.
-    pub(crate) fn id_of(&self, hit: u32) -> u32 {
+    pub fn id_of(&self, hit: u32) -> u32 {
         let given = self.omitted();
         let spheres = self.spheres.len() as u64 + given.cut_away + given.vanished + given.hidden;
         let Some(body) = self.body(hit) else { return hit };

@@ -15,9 +15,9 @@ mod tile;
 pub use chance::{ChanceLight, ChanceVariance, Term};
 pub use exact::ExactSums;
 pub use features::SAMPLES;
-pub(crate) use features::{FeatureSums, MeanFeatures, SampleSet, TileFeatures};
+pub use features::{FeatureSums, MeanFeatures, SampleSet, TileFeatures};
 pub use probes::{Density, Pilot, ProbePair, Probes, Reading, Role};
-pub(crate) use saved::TileHeader;
+pub use saved::TileHeader;
 pub use sums::Sums;
 pub use tile::{PixelSamples, TILE, Tile, View};
 
@@ -87,7 +87,7 @@ impl Region {
     }
 
     /// Returns the number of pixels.
-    pub(crate) fn area(self) -> u64 {
+    pub fn area(self) -> u64 {
         u64::from(self.width) * u64::from(self.height)
     }
 
@@ -130,7 +130,7 @@ impl Film {
 
     /// Creates a black film with some of the tiles, by their numbers, row by row from 0, for a valid
     /// region.
-    pub(crate) fn with_tiles(region: Region, tiles: Range<u32>, squared: bool) -> Self {
+    pub fn with_tiles(region: Region, tiles: Range<u32>, squared: bool) -> Self {
         let regions = Self::tile_regions(region).skip(tiles.start as usize).take(tiles.len());
         let regions: Vec<Region> = regions.collect();
         // New memory is slow, and less so if several threads get it.
@@ -139,7 +139,7 @@ impl Film {
     }
 
     /// Returns the regions of the tiles, row by row.
-    pub(crate) fn tile_regions(region: Region) -> impl Iterator<Item = Region> {
+    pub fn tile_regions(region: Region) -> impl Iterator<Item = Region> {
         let steps = |first: u32, count: u32| {
             (first..first + count)
                 .step_by(TILE as usize)
@@ -156,10 +156,7 @@ impl Film {
     }
 
     /// Splits the pixels of a region, row by row, into the rows of its tiles.
-    pub(crate) fn tile_rows<T>(
-        region: Region,
-        pixels: &mut [T],
-    ) -> impl Iterator<Item = Vec<&mut [T]>> {
+    pub fn tile_rows<T>(region: Region, pixels: &mut [T]) -> impl Iterator<Item = Vec<&mut [T]>> {
         let width = region.width as usize;
         pixels.chunks_mut(width * TILE as usize).flat_map(move |band| {
             let mut tiles: Vec<Vec<&mut [T]>> = Vec::new();

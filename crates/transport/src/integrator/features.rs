@@ -22,7 +22,7 @@ impl FeatureBatch {
     }
 
     /// Returns the sums of a range of the recorded pixels.
-    pub(crate) fn sums(&self, pixels: Range<usize>) -> &[FeatureSums] {
+    pub fn sums(&self, pixels: Range<usize>) -> &[FeatureSums] {
         self.sums.get(pixels).unwrap_or_default()
     }
 }
