@@ -71,6 +71,9 @@ impl Parts {
     /// in pixels. Returns false if this needs the spheres in the user's coordinates, which no longer
     /// exist: a fitted camera depends on the picture's aspect, and the coordinate transform on a
     /// parallel camera's picture.
+    ///
+    /// # Errors
+    /// The scene is out of range, or its camera cannot be placed.
     pub fn place(&mut self, scene: &Scene, from: [u32; 2]) -> Result<bool, WorldError> {
         check::check(scene)?;
         check::check_environment_memory(scene)?;
