@@ -86,7 +86,7 @@ pub fn choose(request: &Request, staged: &mut Staged) -> Result<(), Fault> {
     let Staged { scene, orientation, normals, .. } = staged;
     if let Some(sections) = &request.sections {
         sections.set_camera(&mut scene.camera);
-        if sections.place_camera() {
+        if sections.places_camera() {
             return Ok(());
         }
     }
@@ -142,7 +142,7 @@ pub fn vertical(request: &Request, camera: &Camera, orientation: Option<&Orienta
 /// Lights a scene whose camera is placed as its preset does, or as the sections say.
 pub fn light(request: &Request, staged: &mut Staged) {
     let Staged { scene, orientation, preset, .. } = staged;
-    if let Some(sections) = request.sections.as_ref().filter(|sections| sections.light()) {
+    if let Some(sections) = request.sections.as_ref().filter(|sections| sections.lights_scene()) {
         sections.set_lights(scene);
     } else if let (Some(preset), Some(camera)) = (*preset, &request.lit_from) {
         let own = std::mem::replace(&mut scene.camera, camera.clone());
@@ -160,7 +160,7 @@ pub fn light(request: &Request, staged: &mut Staged) {
 /// The scene cannot be framed.
 pub fn light_ahead(request: &Request, staged: &mut Staged) -> Result<(), Fault> {
     let camera = staged.scene.camera.clone();
-    if !request.sections.as_ref().is_some_and(Sections::light) {
+    if !request.sections.as_ref().is_some_and(Sections::lights_scene) {
         frame_titled(request, staged, None)?;
     }
     light(request, staged);

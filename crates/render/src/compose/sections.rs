@@ -51,7 +51,7 @@ impl Sections {
     }
 
     /// Returns whether they say where the camera is.
-    pub(super) fn place_camera(&self) -> bool {
+    pub(super) fn places_camera(&self) -> bool {
         ["eye", "target", "direction"].iter().any(|key| self.has_key("camera", key))
     }
 
@@ -62,7 +62,7 @@ impl Sections {
         if has(&["projection", "fov", "height"]) {
             camera.projection = given.projection;
         }
-        if self.place_camera() {
+        if self.places_camera() {
             (camera.pose, camera.up) = (given.pose, given.up);
         } else if has(&["margin"])
             && let (Pose::Fit { margin, .. }, Pose::Fit { margin: own, .. }) =
@@ -85,7 +85,7 @@ impl Sections {
     }
 
     /// Returns whether they say what lights the scene.
-    pub(super) fn light(&self) -> bool {
+    pub(super) fn lights_scene(&self) -> bool {
         ["light", "environment", "ground"].into_iter().any(|section| self.has(section))
     }
 
