@@ -45,6 +45,9 @@ pub enum RangeError {
 }
 
 impl Range {
+    /// From 0 to 1, with linear spacing.
+    pub const UNIT: Self = Self { low: 0.0, high: 1.0, spacing: Spacing::Linear };
+
     /// Creates the range from `low` to `high`, which may be equal.
     ///
     /// # Errors

@@ -1,6 +1,7 @@
 //! Hashes of scenes, so that a scene can be compared with one that is no longer in memory.
 
-use super::write::sections;
+use super::keys::{self, section_text};
+use super::write::{self, sections};
 use super::{EnvironmentMap, Scene};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -28,10 +29,10 @@ pub struct Identity {
 impl Identity {
     /// Hashes a scene. Takes about a second for a hundred million spheres.
     pub fn of(scene: &Scene) -> Self {
-        let materials = scene.materials.iter().map(|row| sections::material(&row.material));
+        let materials = scene.materials.iter().map(|row| keys::text(&row.material));
         let ground = scene.ground.as_ref().map_or(String::new(), |ground| {
-            let normal = sections::vector(ground.normal);
-            format!("{normal} {:?} {}", ground.height, ground.material)
+            let normal = ground.normal.to_array();
+            format!("{normal:?} {:?} {}", ground.height, ground.material)
         });
         let annotations = sections::annotations(&scene.annotations);
         let hash = |text: String| *blake3::hash(text.as_bytes()).as_bytes();
@@ -39,10 +40,10 @@ impl Identity {
             spheres: bodies(scene),
             materials: hash(materials.collect()),
             ground: hash(ground),
-            slices: hash(scene.slices.iter().map(sections::slice).collect()),
-            lights: hash(scene.lights.iter().map(sections::light).collect()),
+            slices: hash(scene.slices.iter().map(section_text).collect()),
+            lights: hash(scene.lights.iter().map(section_text).collect()),
             environment: environment(scene),
-            camera: hash(sections::camera(&scene.camera)),
+            camera: hash(section_text(&scene.camera)),
             look: hash(sections::look(&scene.look) + &annotations),
         }
     }
@@ -108,14 +109,14 @@ fn bodies(Scene { spheres, sticks, ellipsoids, cones, .. }: &Scene) -> [u8; 32] 
 fn environment(scene: &Scene) -> [u8; 32] {
     let mut hasher = blake3::Hasher::new();
     if let EnvironmentMap::Picture { image, up, rotation, scale } = &scene.environment.map {
-        let (width, height, up) = (image.width, image.height, sections::vector(*up));
+        let (width, height, up) = (image.width, image.height, up.to_array());
         let lit = scene.environment.illuminates;
-        let words = format!("{width} {height} {up} {rotation:?} {scale:?} {lit}");
+        let words = format!("{width} {height} {up:?} {rotation:?} {scale:?} {lit}");
         hasher.update(words.as_bytes());
         add(&mut hasher, image.pixels.as_flattened(), |value| value.to_le_bytes());
     } else {
         // All but pictures have a text form.
-        let words = sections::environment(&scene.environment, "");
+        let words = write::environment(&scene.environment, "");
         hasher.update(words.as_bytes());
     }
     *hasher.finalize().as_bytes()

@@ -14,6 +14,7 @@ pub mod file;
 mod footprint;
 pub mod generate;
 mod identity;
+pub mod keys;
 mod light;
 mod look;
 mod material;

@@ -47,6 +47,7 @@ impl Limits {
             Self::Within(low, high) if high >= 1e16 => format!("from {low} to {:e}", high as f32),
             Self::Within(low, high) => format!("from {low} to {high}"),
             Self::Below(low, high) => format!("{low} or more and less than {high}"),
+            Self::AboveTo(low, f64::MAX) => format!("finite and more than {low}"),
             Self::AboveTo(low, high) => format!("more than {low} and at most {high}"),
             Self::Between(low, high) => format!("more than {low} and less than {high}"),
         }

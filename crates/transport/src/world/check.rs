@@ -5,38 +5,34 @@ use super::fit::{self, Placement};
 use super::{Transform, WorldError, spheres};
 use crate::image::Image;
 use crate::memory;
-use crate::scene::particles::Cell;
 use crate::scene::{
-    self, BRIGHTEST, Background, Camera, ConductorFresnel, Cones, Ellipsoids, Environment,
-    EnvironmentMap, Ground, Lens, Light, Look, Material, NamedMaterial, Pose, Projection, Rgb,
-    Scene, Slice, Sticks, is_radiance,
+    self, BRIGHTEST, Cones, Ellipsoids, EnvironmentMap, Ground, Material, NamedMaterial, Rgb,
+    Scene, Sticks, is_radiance, keys,
 };
-use glam::DVec3;
-
-/// Tolerance of a unit vector's squared length.
-const UNIT: f64 = 1e-6;
 
 /// Checks what does not depend on the number of spheres.
 pub(super) fn check_view(scene: &Scene) -> Result<(), WorldError> {
     scene.settings.check()?;
-    camera(&scene.camera)
+    keys::check_camera(&scene.camera).map_err(WorldError::Invalid)
 }
 
 pub(super) fn check(scene: &Scene) -> Result<(), WorldError> {
-    check_view(scene)?;
+    scene.settings.check()?;
+    keys::check_sections(scene).map_err(WorldError::Invalid)?;
     scene.materials.iter().try_for_each(material)?;
-    scene.lights.iter().try_for_each(light)?;
-    scene.slices.iter().try_for_each(slice)?;
-    environment(&scene.environment)?;
+    if let EnvironmentMap::Picture { image, scale, .. } = &scene.environment.map {
+        picture(image, *scale)?;
+    }
     scene.ground.as_ref().map_or(Ok(()), |plane| ground(plane, &scene.materials))?;
-    look(&scene.look)?;
     sticks(&scene.sticks, scene.spheres.len(), &scene.materials)?;
     ellipsoids(scene)?;
     cones(scene)?;
     let invalid = scene.spheres.color.iter().position(|&color| !is_fraction(color));
     invalid.map_or(Ok(()), |row| {
         let color = scene.spheres.color[row];
-        albedo(&format!("the color of sphere {row}"), color)
+        let message =
+            || format!("the color of sphere {row} is {color}, but must be 0 to 1 in each channel");
+        require(false, message)
     })
 }
 
@@ -44,206 +40,33 @@ fn require(holds: bool, message: impl FnOnce() -> String) -> Result<(), WorldErr
     if holds { Ok(()) } else { Err(WorldError::Invalid(message())) }
 }
 
-/// Checks a number whose condition is `holds`, which must be false for NaN.
-fn check_number(holds: bool, name: &str, value: f64, range: &str) -> Result<(), WorldError> {
-    require(holds, || format!("{name} is {value}, but must be {range}"))
-}
-
-fn at_least_0(name: &str, value: f64) -> Result<(), WorldError> {
-    check_number((0.0..f64::INFINITY).contains(&value), name, value, "finite and 0 or more")
-}
-
 fn more_than_0(name: &str, value: f64) -> Result<(), WorldError> {
-    check_number(value > 0.0 && value < f64::INFINITY, name, value, "finite and more than 0")
-}
-
-fn unit(name: &str, vector: DVec3) -> Result<(), WorldError> {
-    let holds = (vector.length_squared() - 1.0).abs() <= UNIT;
-    require(holds, || format!("{name} is {vector}, but must have length 1"))
+    require(value > 0.0 && value < f64::INFINITY, || {
+        format!("{name} is {value}, but must be finite and more than 0")
+    })
 }
 
 fn is_fraction(color: Rgb) -> bool {
     (0..3).all(|channel| (0.0..=1.0).contains(&color[channel]))
 }
 
-fn is_valid_radiance(color: Rgb) -> bool {
-    (0..3).all(|channel| (0.0..=BRIGHTEST).contains(&color[channel]))
-}
-
-fn albedo(name: &str, color: Rgb) -> Result<(), WorldError> {
-    require(is_fraction(color), || format!("{name} is {color}, but must be 0 to 1 in each channel"))
-}
-
-/// Checks the real or imaginary part of an index of refraction.
-fn index(name: &str, color: Rgb) -> Result<(), WorldError> {
-    let holds = color.is_finite() && color.min_element() > 0.0;
-    require(holds, || format!("{name} is {color}, but must be finite and more than 0"))
-}
-
-fn radiance(name: &str, color: Rgb) -> Result<(), WorldError> {
-    require(is_valid_radiance(color), || {
-        format!("{name} is {color}, but must be 0 to {BRIGHTEST:e}")
-    })
-}
-
-fn finite(name: &str, vector: DVec3) -> Result<(), WorldError> {
-    require(vector.is_finite(), || format!("{name} is {vector}, but must be finite"))
-}
-
-fn direction(name: &str, vector: DVec3) -> Result<(), WorldError> {
-    let holds = vector.is_finite() && vector != DVec3::ZERO;
-    require(holds, || format!("{name} is {vector}, but must be finite and not zero"))
-}
-
-// Structs are destructured without `..`, so that fields that are added later are not forgotten.
-
-fn camera(camera: &Camera) -> Result<(), WorldError> {
-    let Camera { projection, pose, up, lens, near, insets } = camera;
-    match *projection {
-        Projection::Perspective { fov } => {
-            let holds = fov > 0.0 && fov < 180.0;
-            check_number(holds, "the camera's `fov`", fov, "between 0 and 180 degrees")?;
-        }
-        Projection::Orthographic { height } => {
-            height.map_or(Ok(()), |height| more_than_0("the camera's `height`", height))?;
-        }
-    }
-    match *pose {
-        Pose::LookAt { eye, target } => {
-            finite("the camera's `eye`", eye)?;
-            finite("the camera's `target`", target)?;
-        }
-        Pose::Fit { direction: toward, margin } => {
-            direction("the camera's `direction`", toward)?;
-            let holds = (0.0..1.0).contains(&margin);
-            check_number(holds, "the camera's `margin`", margin, "0 or more, less than 1")?;
-        }
-    }
-    if let Some(Lens { aperture, focus }) = *lens {
-        at_least_0("the camera's `aperture`", aperture)?;
-        focus.map_or(Ok(()), |focus| more_than_0("the camera's `focus`", focus))?;
-    }
-    for inset in insets.to_array() {
-        let holds = (0.0..1.0).contains(&inset);
-        check_number(holds, "an inset of the camera", inset, "0 or more, less than 1")?;
-    }
-    direction("the camera's `up`", *up)?;
-    at_least_0("the camera's `near`", *near)
-}
-
-fn look(look: &Look) -> Result<(), WorldError> {
-    let Look { background, depth_cue: _, outline: _, cell } = look;
-    match *background {
-        Background::Color(color) => radiance("the look's `background`", color)?,
-        Background::Sky | Background::Transparent => (),
-    }
-    let Some(Cell { origin, vectors, periodic: _ }) = *cell else { return Ok(()) };
-    finite("the origin of the look's `cell`", origin)?;
-    vectors.into_iter().try_for_each(|edge| finite("an edge of the look's `cell`", edge))
-}
-
-fn material(named: &NamedMaterial) -> Result<(), WorldError> {
-    let NamedMaterial { name, material } = named;
-    let field = |field: &str| format!("`{field}` of the material \"{name}\"");
-    let fraction = |name: &str, value: f64| {
-        check_number((0.0..=1.0).contains(&value), &field(name), value, "0 to 1")
+/// Checks what fields of a material must be together.
+fn material(NamedMaterial { name, material }: &NamedMaterial) -> Result<(), WorldError> {
+    let refused = match (material, material.surface()) {
+        (Material::Translucent { .. }, Material::Dielectric { .. }) => Some("glass"),
+        (Material::Translucent { .. }, Material::Emitter { .. }) => Some("an emitter"),
+        (_, Material::Translucent { .. }) => Some("translucent itself"),
+        _ => None,
     };
-    match *material {
-        Material::Translucent { opacity, ref surface } => {
-            fraction("opacity", opacity)?;
-            let refused = match **surface {
-                Material::Dielectric { .. } => Some("glass"),
-                Material::Emitter { .. } => Some("an emitter"),
-                Material::Translucent { .. } => Some("translucent itself"),
-                _ => None,
-            };
-            if let Some(kind) = refused {
-                let whose = format!("the surface of the translucent material \"{name}\"");
-                return Err(WorldError::Invalid(format!("{whose} must not be {kind}")));
-            }
-            self::material(&NamedMaterial { name: name.clone(), material: (**surface).clone() })
-        }
-        Material::Lambertian { color } => albedo(&field("color"), color),
-        Material::Conductor { fresnel, roughness } => {
-            fraction("roughness", roughness)?;
-            match fresnel {
-                ConductorFresnel::Schlick(color) | ConductorFresnel::Constant(color) => {
-                    albedo(&field("color"), color)
-                }
-                ConductorFresnel::Exact { eta, k } => [("eta", eta), ("k", k)]
-                    .into_iter()
-                    .try_for_each(|(name, value)| index(&field(name), value)),
-            }
-        }
-        Material::Dielectric { ior, color } => {
-            more_than_0(&field("ior"), ior)?;
-            albedo(&field("color"), color)
-        }
-        Material::Plastic { color, ior } => {
-            let holds = ior > 1.0 && ior.is_finite();
-            check_number(holds, &field("ior"), ior, "finite and more than 1")?;
-            albedo(&field("color"), color)
-        }
-        Material::Reflective { color, diffuse, mirror } => {
-            albedo(&field("color"), color)?;
-            fraction("diffuse", diffuse)?;
-            fraction("mirror", mirror)?;
-            fraction("diffuse + mirror", diffuse + mirror)
-        }
-        Material::Emitter { radiance: emitted, albedo: reflected } => {
-            radiance(&field("radiance"), emitted)?;
-            albedo(&field("albedo"), reflected)
-        }
+    if let Some(kind) = refused {
+        let whose = format!("the surface of the translucent material \"{name}\"");
+        return Err(WorldError::Invalid(format!("{whose} must not be {kind}")));
     }
-}
-
-fn light(light: &Light) -> Result<(), WorldError> {
-    match *light {
-        Light::Sun { direction, irradiance, angular_radius } => {
-            unit("the `direction` of a sun", direction)?;
-            radiance("the `irradiance` of a sun", irradiance)?;
-            let holds = (0.0..90.0).contains(&angular_radius);
-            check_number(
-                holds,
-                "the `angular_radius` of a sun",
-                angular_radius,
-                "0 or more, less than 90",
-            )
-        }
-        Light::Point { position, intensity, .. } => {
-            require(position.is_finite(), || {
-                format!("the `position` of a point light is {position}, but must be finite")
-            })?;
-            let valid = intensity.is_finite() && intensity.min_element() >= 0.0;
-            require(valid, || {
-                format!("the `intensity` of a point light is {intensity}, but must be 0 or more")
-            })
-        }
-    }
-}
-
-fn slice(slice: &Slice) -> Result<(), WorldError> {
-    let Slice { normal, distance, mode: _ } = *slice;
-    unit("the `normal` of a slice", normal)?;
-    check_number(distance.is_finite(), "the `distance` of a slice", distance, "finite")
-}
-
-fn environment(environment: &Environment) -> Result<(), WorldError> {
-    let Environment { map, illuminates: _ } = environment;
-    match map {
-        EnvironmentMap::Constant(color) => radiance("the environment's `color`", *color),
-        EnvironmentMap::Gradient { bottom, top, up } => {
-            radiance("the environment's `bottom`", *bottom)?;
-            radiance("the environment's `top`", *top)?;
-            unit("the environment's `up`", *up)
-        }
-        EnvironmentMap::Picture { image, up, rotation, scale } => {
-            at_least_0("the environment's `scale`", f64::from(*scale))?;
-            picture(image, *scale)?;
-            unit("the environment's `up`", *up)?;
-            check_number(rotation.is_finite(), "the environment's `rotation`", *rotation, "finite")
-        }
-    }
+    let Material::Reflective { diffuse, mirror, .. } = *material.surface() else { return Ok(()) };
+    require(diffuse + mirror <= 1.0, || {
+        let sum = diffuse + mirror;
+        format!("`diffuse + mirror` of the material \"{name}\" is {sum}, but must be 0 to 1")
+    })
 }
 
 fn picture(image: &Image, scale: f32) -> Result<(), WorldError> {
@@ -260,10 +83,7 @@ fn picture(image: &Image, scale: f32) -> Result<(), WorldError> {
 
 /// Checks the ground, whose material's row exists.
 fn ground(ground: &Ground, materials: &[NamedMaterial]) -> Result<(), WorldError> {
-    let Ground { normal, height, material } = *ground;
-    unit("the ground's `normal`", normal)?;
-    check_number(height.is_finite(), "the ground's `height`", height, "finite")?;
-    let material = materials.get(material as usize).map(|named| &named.material);
+    let material = materials.get(ground.material as usize).map(|named| &named.material);
     let solid = !matches!(
         material,
         Some(Material::Dielectric { .. } | Material::Emitter { .. } | Material::Translucent { .. })
@@ -399,8 +219,12 @@ pub(super) fn check_environment_memory(scene: &Scene) -> Result<(), WorldError> 
 mod tests {
     use super::*;
     use crate::World;
-    use crate::scene::SliceMode;
     use crate::scene::generate::default_scene;
+    use crate::scene::particles::Cell;
+    use crate::scene::{
+        Background, ConductorFresnel, Environment, Lens, Light, Pose, Projection, Slice, SliceMode,
+    };
+    use glam::DVec3;
     use std::sync::Arc;
 
     /// Values that most fields refuse.

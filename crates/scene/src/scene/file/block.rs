@@ -1,47 +1,53 @@
 //! Sections of a scene file: a table whose keys are known and have a meaning for the section's kind.
 
-use super::schema::Schema;
 use super::value::Value;
 use crate::scene::FileError;
+use crate::scene::keys::{Key, Kind, Schema, Section, Visitor};
 use crate::suggest;
 use std::ops::Range;
 use std::path::Path;
+use std::rc::Rc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// The scene file that is being read.
-pub(super) struct Source<'a> {
+pub(in crate::scene) struct Source<'a> {
     /// Path, for messages.
-    pub(super) path: &'a Path,
-    pub(super) text: &'a str,
+    pub(in crate::scene) path: &'a Path,
+    pub(in crate::scene) text: &'a str,
     /// Folder to which paths in the scene are relative.
-    pub(super) folder: &'a Path,
+    pub(in crate::scene) folder: &'a Path,
 }
 
 impl Source<'_> {
     /// Returns an error at these bytes.
-    pub(super) fn error(&self, span: Range<usize>, message: impl Into<String>) -> FileError {
+    pub(in crate::scene) fn error(
+        &self,
+        span: Range<usize>,
+        message: impl Into<String>,
+    ) -> FileError {
         FileError::at(self.path, self.text, 1, span, message)
     }
 }
 
 /// A table of the file whose keys are all in its schema.
-pub(super) struct Block<'a> {
+pub(in crate::scene) struct Block<'a> {
     source: &'a Source<'a>,
-    schema: &'static Schema,
+    schema: Rc<Schema>,
     span: Range<usize>,
     table: &'a DeTable<'a>,
 }
 
 impl<'a> Block<'a> {
     /// Opens a table and checks that its keys are known.
-    pub(super) fn open(
+    pub(in crate::scene) fn open(
         source: &'a Source<'a>,
-        schema: &'static Schema,
+        schema: Rc<Schema>,
         span: Range<usize>,
         table: &'a DeTable<'a>,
     ) -> Result<Self, FileError> {
         let block = Self { source, schema, span, table };
+        let schema = &block.schema;
         for key in table.keys() {
             let name = key.get_ref();
             if !schema.names().any(|known| known == name) {
@@ -53,18 +59,44 @@ impl<'a> Block<'a> {
         Ok(block)
     }
 
+    /// Reads the section; its keys must be those of the block's schema.
+    pub(in crate::scene) fn read<T: Section>(&self) -> Result<T, FileError> {
+        let mut section = (T::EMPTY)();
+        section.visit(&mut Reader(self))?;
+        Ok(section)
+    }
+
+    /// Reads the section, if it exists, that a scene file writes as `[name]`.
+    pub(in crate::scene) fn section<T: Section>(
+        &self,
+        name: &'static str,
+    ) -> Result<Option<T>, FileError> {
+        let block = self.block(name, Schema::of::<T>())?;
+        block.map(|block| block.read()).transpose()
+    }
+
+    /// Reads all sections that a scene file writes as `[[name]]`.
+    pub(in crate::scene) fn sections<T: Section>(
+        &self,
+        name: &'static str,
+    ) -> Result<Vec<T>, FileError> {
+        self.blocks(name, Schema::of::<T>())?.iter().map(Self::read).collect()
+    }
+
     /// Returns the section's kind, after checking that every key has a meaning for it.
-    pub(super) fn kind(&self) -> Result<&'static str, FileError> {
-        let kind = match (self.value(self.schema.selector), self.schema.default_kind) {
-            (Some(value), _) => value.choice(self.schema.kinds)?,
-            (None, Some(kind)) => kind,
-            (None, None) => return Err(self.missing_kind()),
+    pub(in crate::scene) fn kind(&self) -> Result<&'static str, FileError> {
+        let Schema { selector, kinds, needs_kind, .. } = &*self.schema;
+        let kind = match self.value(selector) {
+            Some(value) => value.choice(kinds)?,
+            None if *needs_kind => return Err(self.missing_kind()),
+            None => kinds[0],
         };
-        for &(name, kinds) in self.schema.keys {
+        for entry in &self.schema.keys {
+            let kinds = self.schema.kinds_of(entry);
             if !kinds.is_empty() && !kinds.contains(&kind) {
-                self.forbid(name, &format!("{} = \"{kind}\"", self.schema.selector), || {
+                self.forbid(entry.name, &format!("{selector} = \"{kind}\""), || {
                     let values = join(kinds.iter().map(|kind| format!("\"{kind}\"")), " or ");
-                    format!("it belongs to {} = {values}: remove it", self.schema.selector)
+                    format!("it belongs to {selector} = {values}: remove it")
                 })?;
             }
         }
@@ -72,7 +104,7 @@ impl<'a> Block<'a> {
     }
 
     /// Returns an error if the key exists, which is meaningless together with `reason`.
-    pub(super) fn forbid(
+    pub(in crate::scene) fn forbid(
         &self,
         name: &str,
         reason: &str,
@@ -84,13 +116,17 @@ impl<'a> Block<'a> {
     }
 
     /// Returns the value of a key of the schema, if it exists.
-    pub(super) fn value(&self, name: &'static str) -> Option<Value<'a>> {
+    pub(in crate::scene) fn value(&self, name: &'static str) -> Option<Value<'a>> {
         let (_, item) = self.entry(name)?;
         Some(Value { source: self.source, name, span: item.span(), item: item.get_ref() })
     }
 
     /// Returns the value of a required key; `help` says what to write.
-    pub(super) fn need(&self, name: &'static str, help: &str) -> Result<Value<'a>, FileError> {
+    pub(in crate::scene) fn need(
+        &self,
+        name: &'static str,
+        help: &str,
+    ) -> Result<Value<'a>, FileError> {
         self.value(name).ok_or_else(|| {
             let message = format!("missing key `{name}` in {}", self.schema.section);
             self.error(message).with_help(format!("write {help}"))
@@ -98,59 +134,69 @@ impl<'a> Block<'a> {
     }
 
     /// Returns an error for the whole section.
-    pub(super) fn error(&self, message: impl Into<String>) -> FileError {
+    pub(in crate::scene) fn error(&self, message: impl Into<String>) -> FileError {
         self.source.error(self.span.clone(), message)
     }
 
+    /// Returns an error at the value of a key, or for the whole section without it.
+    pub(in crate::scene) fn error_at(&self, name: &'static str, message: &str) -> FileError {
+        self.value(name).map_or_else(|| self.error(message), |value| value.error(message))
+    }
+
     /// Returns whether the key exists.
-    pub(super) fn has(&self, name: &str) -> bool {
+    pub(in crate::scene) fn has(&self, name: &str) -> bool {
         self.entry(name).is_some()
     }
 
     /// Returns the tables under a key that a scene file writes as `[[name]]`.
-    pub(super) fn blocks(
+    pub(in crate::scene) fn blocks(
         &self,
         name: &'static str,
-        schema: &'static Schema,
+        schema: Schema,
     ) -> Result<Vec<Self>, FileError> {
         let Some(value) = self.value(name) else { return Ok(Vec::new()) };
         let DeValue::Array(items) = value.item else {
             let error = value.error(format!("`{name}` must be a list of tables"));
             return Err(error.with_help(format!("write [[{name}]] for each")));
         };
-        items.iter().map(|item| self.open_item(schema, item.span(), item.get_ref())).collect()
+        let schema = Rc::new(schema);
+        items
+            .iter()
+            .map(|item| self.open_item(schema.clone(), item.span(), item.get_ref()))
+            .collect()
     }
 
     /// Returns the table under a key that a scene file writes as `[name]`.
-    pub(super) fn block(
+    pub(in crate::scene) fn block(
         &self,
         name: &'static str,
-        schema: &'static Schema,
+        schema: Schema,
     ) -> Result<Option<Self>, FileError> {
         let Some(value) = self.value(name) else { return Ok(None) };
-        self.open_item(schema, value.span.clone(), value.item).map(Some)
+        self.open_item(Rc::new(schema), value.span.clone(), value.item).map(Some)
     }
 
     /// Returns the tables under a key that a scene file writes as `[name.OWN]`, with their own names,
     /// in the file's order.
-    pub(super) fn named_blocks(
+    pub(in crate::scene) fn named_blocks(
         &self,
         name: &'static str,
-        schema: &'static Schema,
+        schema: Schema,
     ) -> Result<Vec<(&'a str, Self)>, FileError> {
         let Some(value) = self.value(name) else { return Ok(Vec::new()) };
         let mut entries: Vec<_> = value.table()?.iter().collect();
         entries.sort_by_key(|(key, _)| key.span().start);
+        let schema = Rc::new(schema);
         let open = |(key, item): (&'a Spanned<_>, &'a Spanned<DeValue<'a>>)| {
             let name: &'a std::borrow::Cow<'a, str> = key.get_ref();
-            Ok((name.as_ref(), self.open_item(schema, key.span(), item.get_ref())?))
+            Ok((name.as_ref(), self.open_item(schema.clone(), key.span(), item.get_ref())?))
         };
         entries.into_iter().map(open).collect()
     }
 
     fn open_item(
         &self,
-        schema: &'static Schema,
+        schema: Rc<Schema>,
         span: Range<usize>,
         item: &'a DeValue<'a>,
     ) -> Result<Self, FileError> {
@@ -164,10 +210,52 @@ impl<'a> Block<'a> {
     }
 
     fn missing_kind(&self) -> FileError {
-        let Schema { section, selector, kinds, .. } = self.schema;
+        let Schema { section, selector, kinds, .. } = &*self.schema;
         let kinds = join(kinds.iter().map(|kind| format!("\"{kind}\"")), ", ");
         self.error(format!("missing key `{selector}` in {section}"))
             .with_help(format!("write {selector} = one of {kinds}"))
+    }
+}
+
+/// Reads the keys of a section.
+struct Reader<'b, 'a>(&'b Block<'a>);
+
+impl Visitor for Reader<'_, '_> {
+    type Error = FileError;
+
+    fn visit<K: Kind>(&mut self, key: Key, kind: K, value: &mut K::Value) -> Result<(), FileError> {
+        let found = match key.example {
+            Some(example) => Some(self.0.need(key.name, example)?),
+            None => self.0.value(key.name),
+        };
+        if let Some(found) = found {
+            *value = kind.read(&found)?;
+        }
+        Ok(())
+    }
+
+    fn choose<T: Clone>(
+        &mut self,
+        _: Key,
+        kinds: &[(&'static str, T)],
+        value: &mut T,
+    ) -> Result<(), FileError> {
+        let kind = self.0.kind()?;
+        if let Some((_, of)) = kinds.iter().find(|(name, _)| *name == kind) {
+            value.clone_from(of);
+        }
+        Ok(())
+    }
+
+    fn form<T: Clone>(&mut self, forms: &[(&[&str], T)], value: &mut T) {
+        let given = |keys: &[&str]| keys.iter().any(|key| self.0.has(key));
+        if let Some((_, form)) = forms.iter().find(|(keys, _)| given(keys)) {
+            value.clone_from(form);
+        }
+    }
+
+    fn refuse(&mut self, name: &'static str, message: &str) -> Result<(), FileError> {
+        Err(self.0.error_at(name, message))
     }
 }
 

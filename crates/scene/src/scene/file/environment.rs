@@ -1,37 +1,20 @@
 //! `[environment]`: radiance of rays that leave the scene.
 
 use super::block::{Block, Source};
-use super::value::{LIGHT, Limits, Value};
+use super::value::Value;
 use crate::image::Image;
-use crate::scene::{BRIGHTEST, Environment, EnvironmentMap, FileError, Rgb, is_radiance};
-use glam::DVec3;
+use crate::scene::keys::EnvironmentKeys;
+use crate::scene::{BRIGHTEST, Environment, EnvironmentMap, FileError, is_radiance};
 use std::sync::Arc;
 
 pub(super) fn read(source: &Source, block: &Block) -> Result<Environment, FileError> {
-    let color = |key, usual| block.value(key).map_or(Ok(usual), |value: Value| value.color(LIGHT));
-    let up = || block.value("up").map_or(Ok(DVec3::Y), |value| value.direction());
-    let map = match block.kind()? {
-        "gradient" => EnvironmentMap::Gradient {
-            bottom: color("bottom", Rgb::ONE)?,
-            top: color("top", Rgb::new(0.5, 0.7, 1.0))?,
-            up: up()?,
-        },
-        "picture" => {
-            let file = block.need("file", "file = \"sky.hdr\": a latitude-longitude picture")?;
-            let rotation = block.value("rotation");
-            let scale = block.value("scale");
-            let scale = scale.map_or(Ok(1.0), |value| value.single(Limits::NotNegative))?;
-            EnvironmentMap::Picture {
-                image: Arc::new(picture(source, &file, scale)?),
-                up: up()?,
-                rotation: rotation.map_or(Ok(0.0), |value| value.number(Limits::Any))?,
-                scale,
-            }
-        }
-        _ => EnvironmentMap::Constant(color("color", Rgb::ONE)?),
-    };
-    let illuminates = block.value("illuminates").map_or(Ok(true), |value| value.flag())?;
-    Ok(Environment { map, illuminates })
+    let EnvironmentKeys { mut environment, .. } = block.read()?;
+    if let EnvironmentMap::Picture { image, scale, .. } = &mut environment.map
+        && let Some(file) = block.value("file")
+    {
+        *image = Arc::new(picture(source, &file, *scale)?);
+    }
+    Ok(environment)
 }
 
 fn picture(source: &Source, file: &Value, scale: f32) -> Result<Image, FileError> {

@@ -1,18 +1,13 @@
 //! `[material.NAME]` and `[ground]`: materials.
 
 use super::block::Block;
-use super::schema;
-use super::value::{LIGHT, Limits, Value};
-use crate::scene::{ConductorFresnel, FileError, Ground, Material, NamedMaterial, Rgb};
+use crate::scene::keys::{GroundKeys, Schema, Section};
+use crate::scene::{ConductorFresnel, FileError, Ground, Material, NamedMaterial};
 use crate::suggest;
-use glam::DVec3;
 use std::collections::HashMap;
 
 /// Name of the default material.
 pub(super) const DEFAULT: &str = "default";
-
-/// Default reflectance of matte materials.
-const GRAY: Rgb = Rgb::splat(0.7);
 
 /// The materials of a scene that is being read, with an index by name.
 #[derive(Default)]
@@ -64,17 +59,14 @@ impl Materials {
 
 pub(super) fn read(root: &Block) -> Result<Materials, FileError> {
     let mut materials = Materials::default();
-    for (name, block) in root.named_blocks("material", &schema::MATERIAL)? {
+    for (name, block) in root.named_blocks("material", Schema::of::<Material>())? {
         // CSV cells are trimmed, and an empty cell names no material.
         if name.is_empty() || name.trim() != name {
             let error =
                 block.error("a material's name is empty, or has leading or trailing blanks");
             return Err(error.with_help("write [material.NAME] with another name"));
         }
-        let mut material = material(&block)?;
-        if let Some(value) = block.value("opacity") {
-            material = material.with_opacity(value.number(Limits::Share)?);
-        }
+        let material = material(&block)?;
         materials.row_or_add(NamedMaterial { name: name.to_owned(), material });
     }
     Ok(materials)
@@ -85,23 +77,20 @@ pub(super) fn read_ground(
     root: &Block,
     materials: &mut Materials,
 ) -> Result<Option<Ground>, FileError> {
-    let Some(block) = root.block("ground", &schema::GROUND)? else { return Ok(None) };
-    let normal = block.value("normal").map_or(Ok(DVec3::Y), |value| value.direction())?;
-    let height = block.value("height").map_or(Ok(0.0), |value| value.number(Limits::Any))?;
-    let material = row(&block, materials)?;
-    let unsupported = match materials.rows[material as usize].material {
+    let Some(block) = root.block("ground", Schema::of::<GroundKeys>())? else { return Ok(None) };
+    let GroundKeys { mut ground, .. } = block.read()?;
+    ground.material = row(&block, materials)?;
+    let unsupported = match materials.rows[ground.material as usize].material {
         Material::Dielectric { .. } => Some("a dielectric"),
         Material::Emitter { .. } => Some("an emitter"),
         Material::Translucent { .. } => Some("translucent"),
         _ => None,
     };
     if let Some(kind) = unsupported {
-        let message = format!("the ground cannot be {kind}");
-        let error = block.value("material").map(|value| value.error(message.as_str()));
-        let error = error.unwrap_or_else(|| block.error(message));
+        let error = block.error_at("material", &format!("the ground cannot be {kind}"));
         return Err(error.with_help("name a material of another kind, or use a sphere"));
     }
-    Ok(Some(Ground { normal, height, material }))
+    Ok(Some(ground))
 }
 
 /// Refuses dielectrics and emitters for `body`, which only spheres can be.
@@ -116,17 +105,15 @@ pub(super) fn refuse_lights_and_glass(
         Material::Emitter { .. } => "an emitter",
         _ => return Ok(()),
     };
-    let message = format!("{body} cannot be {kind}");
-    let error = block.value("material").map(|value| value.error(message.as_str()));
-    let error = error.unwrap_or_else(|| block.error(message));
+    let error = block.error_at("material", &format!("{body} cannot be {kind}"));
     Err(error.with_help("name a material of another kind, or use spheres"))
 }
 
 /// Returns the row of the material that the section names, or of the default material.
 pub(super) fn row(block: &Block, materials: &mut Materials) -> Result<u32, FileError> {
     let Some(value) = block.value("material") else {
-        let material = Material::Lambertian { color: GRAY };
-        return Ok(materials.row_or_add(NamedMaterial { name: DEFAULT.to_owned(), material }));
+        let default = NamedMaterial { name: DEFAULT.to_owned(), material: (Material::EMPTY)() };
+        return Ok(materials.row_or_add(default));
     };
     let name = value.text()?;
     materials.position(name).ok_or_else(|| {
@@ -135,69 +122,21 @@ pub(super) fn row(block: &Block, materials: &mut Materials) -> Result<u32, FileE
 }
 
 fn material(block: &Block) -> Result<Material, FileError> {
-    let kind = block.kind()?;
-    let color =
-        |key, usual| block.value(key).map_or(Ok(usual), |value: Value| value.color(Limits::Share));
-    Ok(match kind {
-        "lambertian" => Material::Lambertian { color: color("color", GRAY)? },
-        "conductor" => {
-            let roughness = block.value("roughness");
-            Material::Conductor {
-                fresnel: conductor(block)?,
-                roughness: roughness.map_or(Ok(0.0), |value| value.number(Limits::Share))?,
+    let material: Material = block.read()?;
+    match *material.surface() {
+        Material::Conductor { fresnel: ConductorFresnel::Exact { .. }, .. } => {
+            for key in ["color", "fresnel"] {
+                let help = || "write either color, or eta and k".to_owned();
+                block.forbid(key, "eta and k", help)?;
             }
         }
-        "dielectric" => Material::Dielectric {
-            ior: ior(block, Limits::Positive)?,
-            color: color("color", Rgb::ONE)?,
-        },
-        "plastic" => Material::Plastic {
-            color: color("color", GRAY)?,
-            ior: ior(block, Limits::AboveTo(1.0, f64::MAX))?,
-        },
-        "emitter" => {
-            let radiance = block.need("radiance", "radiance = [r, g, b], or a number for white")?;
-            let radiance = radiance.color(LIGHT)?;
-            Material::Emitter { radiance, albedo: color("albedo", Rgb::ZERO)? }
+        Material::Reflective { diffuse, mirror, .. } if diffuse + mirror > 1.0 => {
+            let at = if block.has("mirror") { "mirror" } else { "diffuse" };
+            let message = format!("the sum of `diffuse` and `mirror` is {}", diffuse + mirror);
+            let error = block.error_at(at, &message);
+            return Err(error.with_help("the sum must be at most 1; the default of each is 0.5"));
         }
-        _ => reflective(block, color("color", GRAY)?)?,
-    })
-}
-
-fn ior(block: &Block, limits: Limits) -> Result<f64, FileError> {
-    block.value("ior").map_or(Ok(1.5), |value| value.number(limits))
-}
-
-fn reflective(block: &Block, color: Rgb) -> Result<Material, FileError> {
-    let fraction =
-        |key| block.value(key).map_or(Ok(0.5), |value: Value| value.number(Limits::Share));
-    let (diffuse, mirror) = (fraction("diffuse")?, fraction("mirror")?);
-    if diffuse + mirror > 1.0 {
-        let message = format!("the sum of `diffuse` and `mirror` is {}", diffuse + mirror);
-        let at = block.value("mirror").or_else(|| block.value("diffuse"));
-        let error = at.map_or_else(|| block.error(&*message), |value| value.error(&*message));
-        return Err(error.with_help("the sum must be at most 1; the default of each is 0.5"));
+        _ => (),
     }
-    Ok(Material::Reflective { color, diffuse, mirror })
-}
-
-fn conductor(block: &Block) -> Result<ConductorFresnel, FileError> {
-    if !block.has("eta") && !block.has("k") {
-        let help = "color = [r, g, b], the reflectance at normal incidence, or eta and k";
-        let color = block.need("color", help)?.color(Limits::Share)?;
-        let curve = block.value("fresnel");
-        let curve = curve.map_or(Ok("schlick"), |value| value.choice(&["schlick", "constant"]))?;
-        return Ok(if curve == "schlick" {
-            ConductorFresnel::Schlick(color)
-        } else {
-            ConductorFresnel::Constant(color)
-        });
-    }
-    for key in ["color", "fresnel"] {
-        let help = || "write either color, or eta and k".to_owned();
-        block.forbid(key, "eta and k", help)?;
-    }
-    let eta = block.need("eta", "eta = [r, g, b]: the real part of the index of refraction")?;
-    let k = block.need("k", "k = [r, g, b]: the imaginary part of the index of refraction")?;
-    Ok(ConductorFresnel::Exact { eta: eta.color(Limits::Positive)?, k: k.color(Limits::Positive)? })
+    Ok(material)
 }

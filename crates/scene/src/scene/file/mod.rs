@@ -5,33 +5,32 @@
 //! its line and what to write instead. `scenes/README.md` describes every key.
 
 mod annotations;
-mod block;
+pub(in crate::scene) mod block;
 mod camera;
 mod cones;
 mod ellipsoids;
 mod environment;
-mod lights;
-mod look;
 mod materials;
 mod render;
-mod schema;
-mod slices;
 mod spheres;
 mod sticks;
-mod value;
+pub(in crate::scene) mod value;
 
 use self::block::{Block, Source};
 use self::materials::Materials;
+use super::keys::{EnvironmentKeys, SECTIONS, Schema};
 use super::particles::{self, Orientation, Particles, ReadOptions, TypeMaterial};
 use super::{
-    Camera, Environment, EnvironmentMap, FileError, Light, Look, Material, NamedMaterial, Preset,
-    Rgb, Scene, Settings, Spheres,
+    Camera, Environment, EnvironmentMap, FileError, Light, Material, NamedMaterial, Preset, Rgb,
+    Scene, Settings, Spheres,
 };
 use crate::memory::{self, Shortage, read_at_most};
 use memchr::memchr_iter;
 use spherule_particles::internals::{clipped, listed};
 use std::fs::File;
+use std::iter;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use toml::de::DeTable;
 
 /// Maximum length of a scene file, in bytes: about a million spheres. More belong in a particle file.
@@ -107,7 +106,9 @@ impl Scene {
             let end = text.len()..text.len();
             source.error(error.span().unwrap_or(end), error.message())
         })?;
-        let root = Block::open(&source, &schema::ROOT, 0..0, document.get_ref())?;
+        let names = iter::once("title").chain(SECTIONS.map(|(name, _)| name));
+        let schema = Rc::new(Schema::plain("the scene", names));
+        let root = Block::open(&source, schema, 0..0, document.get_ref())?;
         read(&source, &root)
     }
 
@@ -195,17 +196,16 @@ fn parse_bytes(text: &str) -> u64 {
 /// Reads all sections, each after those that it refers to.
 fn read(source: &Source, root: &Block) -> Result<Scene, FileError> {
     let title = root.value("title").map_or(Ok(""), |value| value.text())?;
-    let settings = root.block("render", &schema::RENDER)?;
-    let camera = root.block("camera", &schema::CAMERA)?;
-    let look = root.block("look", &schema::LOOK)?;
+    let settings = root.block("render", Schema::render())?;
+    let camera = root.block("camera", Schema::of::<Camera>())?;
     let mut scene = Scene {
         title: title.to_owned(),
         settings: settings.map_or(Ok(Settings::default()), |block| render::read(&block))?,
         camera: camera.map_or(Ok(Camera::default()), |block| camera::read(&block))?,
-        look: look.map_or(Ok(Look::default()), |block| look::read(&block))?,
+        look: root.section("look")?.unwrap_or_default(),
         annotations: annotations::read(root)?,
-        slices: slices::read(root)?,
-        lights: lights::read(root)?,
+        slices: root.sections("slice")?,
+        lights: root.sections("light")?,
         ..Scene::default()
     };
     let mut materials = materials::read(root)?;
@@ -215,7 +215,7 @@ fn read(source: &Source, root: &Block) -> Result<Scene, FileError> {
     cones::read(root, &mut scene.cones, &mut materials)?;
     scene.ground = materials::read_ground(root, &mut materials)?;
     scene.materials = materials.into_rows();
-    let environment = root.block("environment", &schema::ENVIRONMENT)?;
+    let environment = root.block("environment", Schema::of::<EnvironmentKeys>())?;
     scene.environment = match environment {
         Some(block) => environment::read(source, &block)?,
         None => default_environment(&scene.lights, &scene.materials, &scene.spheres),

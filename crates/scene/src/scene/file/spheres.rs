@@ -2,13 +2,12 @@
 
 use super::block::{Block, Source};
 use super::materials::{self, Materials};
-use super::schema;
-use super::value::{Limits, Value};
 use crate::memory;
 use crate::scene::Footprint;
-use crate::scene::generate::{Field, Generator, Grid, Lattice, Sphereflake, Volume, Weekend};
-use crate::scene::particles::{self, Format, Radii, ReadOptions};
-use crate::scene::{FileError, Rgb, Scene, Spheres};
+use crate::scene::generate::{Field, Generator};
+use crate::scene::keys::{FileKeys, GenerateKeys, Schema, SphereKeys};
+use crate::scene::particles::{self, Radii, ReadOptions};
+use crate::scene::{FileError, Scene, Spheres};
 use std::path::PathBuf;
 
 pub(super) fn read(
@@ -17,13 +16,13 @@ pub(super) fn read(
     scene: &mut Scene,
     materials: &mut Materials,
 ) -> Result<(), FileError> {
-    for block in root.blocks("sphere", &schema::SPHERE)? {
+    for block in root.blocks("sphere", Schema::of::<SphereKeys>())? {
         read_sphere(&block, &mut scene.spheres, materials)?;
     }
-    for block in root.blocks("generate", &schema::GENERATE)? {
+    for block in root.blocks("generate", Schema::of::<GenerateKeys>())? {
         read_generate(&block, &mut scene.spheres, materials)?;
     }
-    for block in root.blocks("file", &schema::FILE)? {
+    for block in root.blocks("file", Schema::of::<FileKeys>())? {
         read_file(source, &block, scene, materials)?;
     }
     Ok(())
@@ -34,10 +33,7 @@ fn read_sphere(
     spheres: &mut Spheres,
     materials: &mut Materials,
 ) -> Result<(), FileError> {
-    let center = block.need("center", "center = [x, y, z]")?.point()?;
-    let radius = block.need("radius", "radius = a number greater than 0")?;
-    let radius = radius.number(Limits::Positive)?;
-    let color = block.value("color").map_or(Ok(Rgb::ONE), |value| value.color(Limits::Share))?;
+    let SphereKeys { center, radius, color, .. } = block.read()?;
     let material = materials::row(block, materials)?;
     spheres.push(center, radius, material, color);
     Ok(())
@@ -48,8 +44,13 @@ fn read_generate(
     spheres: &mut Spheres,
     materials: &mut Materials,
 ) -> Result<(), FileError> {
-    let generator = generator(block)?;
-    let seed = block.value("seed").map_or(Ok(0), |value| value.whole(0, u64::MAX))?;
+    let GenerateKeys { generator, seed, .. } = block.read()?;
+    if let Generator::Field(Field { mix: Some(_), .. }) = generator {
+        block.forbid("material", "mix", || {
+            "a mix uses the materials diffuse, metal and glass, which the scene may define"
+                .to_owned()
+        })?;
+    }
     let own = block.has("material").then(|| materials::row(block, materials));
     let row = match &own {
         Some(Ok(row)) => *row,
@@ -60,13 +61,11 @@ fn read_generate(
     added.emitters = if emits { added.spheres } else { 0 };
     added.materials |= row > 0;
     check_capacity(spheres, &added, 0, materials).map_err(|message| {
-        let count = block.value("count").or_else(|| block.value("level"));
-        count.map_or_else(|| block.error(message.as_str()), |value| value.error(message.as_str()))
+        block.error_at(if block.has("count") { "count" } else { "level" }, &message)
     })?;
     let group = generator.generate(seed).map_err(|error| {
         let message = format!("`{}` {}", error.parameter, error.message);
-        let value = block.value(error.parameter);
-        value.map_or_else(|| block.error(message.as_str()), |value| value.error(message.as_str()))
+        block.error_at(error.parameter, &message)
     })?;
     let rows = match own {
         _ if !group.materials.is_empty() => {
@@ -80,96 +79,27 @@ fn read_generate(
     Ok(())
 }
 
-fn generator(block: &Block) -> Result<Generator, FileError> {
-    let count = |usual| block.value("count").map_or(Ok(usual), |value| value.whole(1, u64::MAX));
-    let number = |key, usual| {
-        block.value(key).map_or(Ok(usual), |value: Value| value.number(Limits::Positive))
-    };
-    let radii =
-        || block.value("radius").map(|value| value.numbers::<2>(Limits::Positive)).transpose();
-    let colors = |usual| block.value("colors").map_or(Ok(usual), |value| value.flag());
-    Ok(match block.kind()? {
-        "grid" => {
-            let usual = Grid::default();
-            Generator::Grid(Grid {
-                count: count(usual.count)?,
-                spacing: number("spacing", usual.spacing)?,
-                radius: number("radius", usual.radius)?,
-            })
-        }
-        "field" => Generator::Field(field(block)?),
-        "volume" => Generator::Volume(Volume {
-            count: count(Volume::default().count)?,
-            size: block.value("size").map(|value| value.number(Limits::Positive)).transpose()?,
-            radius: radii()?,
-            colors: colors(false)?,
-        }),
-        "lattice" => {
-            let usual = Lattice::default();
-            let jitter = block.value("jitter");
-            Generator::Lattice(Lattice {
-                count: count(usual.count)?,
-                radius: number("radius", usual.radius)?,
-                jitter: jitter.map_or(Ok(0.0), |value| value.number(Limits::NotNegative))?,
-            })
-        }
-        "sphereflake" => {
-            let usual = Sphereflake::default();
-            let level = block.value("level");
-            let level = level
-                .map_or(Ok(u64::from(usual.level)), |value| value.whole(0, u64::from(u32::MAX)))?;
-            let radius = number("radius", usual.radius)?;
-            Generator::Sphereflake(Sphereflake { level: level as u32, radius })
-        }
-        _ => Generator::Weekend(Weekend),
-    })
-}
-
-fn field(block: &Block) -> Result<Field, FileError> {
-    let usual = Field::default();
-    let mix =
-        block.value("mix").map(|value| value.numbers::<3>(Limits::NotNegative)).transpose()?;
-    if mix.is_some() {
-        block.forbid("material", "mix", || {
-            "a mix uses the materials diffuse, metal and glass, which the scene may define"
-                .to_owned()
-        })?;
-    }
-    let count = block.value("count");
-    let radius = block.value("radius");
-    let colors = block.value("colors");
-    Ok(Field {
-        count: count.map_or(Ok(usual.count), |value| value.whole(1, u64::MAX))?,
-        radius: radius.map_or(Ok(usual.radius), |value| value.numbers(Limits::Positive))?,
-        colors: colors.map_or(Ok(usual.colors), |value| value.flag())?,
-        mix,
-    })
-}
-
 fn read_file(
     source: &Source,
     block: &Block,
     scene: &mut Scene,
     materials: &mut Materials,
 ) -> Result<(), FileError> {
-    let file = block.need("path", "path = \"particles.csv\"")?;
-    let format = block.value("format").map(|value| format(&value)).transpose()?;
-    let scale = block.value("scale");
-    let radius = block.value("radius").map(|value| value.number(Limits::Positive)).transpose()?;
-    let topology = block.value("topology").map(|value| existing(source, &value)).transpose()?;
+    let FileKeys { path, format, topology, radius, scale, .. } = block.read()?;
+    let topology = topology.map(|file| existing(source, block, "topology", &file)).transpose()?;
     let options = ReadOptions {
         format,
         topology,
         radii: radius.map_or(Radii::Auto, Radii::Missing),
-        scale: scale.map_or(Ok(1.0), |value| value.number(Limits::Positive))?,
+        scale,
         ..ReadOptions::default()
     };
-    let path = existing(source, &file)?;
+    let path = existing(source, block, "path", &path)?;
     let mut particles = particles::read(&path, &options)?;
     let ellipsoids = particles.shapes.semi_axes.len() as u64;
     let added = Footprint { ellipsoids, ..Footprint::of_columns(&particles.spheres, &[]) };
     check_capacity(&scene.spheres, &added, added.scene(), materials)
-        .map_err(|message| file.error(message))?;
+        .map_err(|message| block.error_at("path", &message))?;
     let mut rows = Vec::new();
     for name in &particles.material_names {
         rows.push(if name.is_empty() {
@@ -177,7 +107,7 @@ fn read_file(
         } else {
             materials.position(name).ok_or_else(|| {
                 let message = format!("{} names an unknown material \"{name}\"", path.display());
-                file.error(message).with_help(materials.known(name))
+                block.error_at("path", &message).with_help(materials.known(name))
             })?
         });
     }
@@ -189,20 +119,19 @@ fn read_file(
     Ok(())
 }
 
-/// Returns the path of a file that a value names.
-fn existing(source: &Source, file: &Value) -> Result<PathBuf, FileError> {
-    let path = source.folder.join(file.text()?);
+/// Returns the path of a file that a key names.
+fn existing(
+    source: &Source,
+    block: &Block,
+    key: &'static str,
+    file: &str,
+) -> Result<PathBuf, FileError> {
+    let path = source.folder.join(file);
     if path.is_file() {
         return Ok(path);
     }
-    let error = file.error(format!("file not found: {}", path.display()));
+    let error = block.error_at(key, &format!("file not found: {}", path.display()));
     Err(error.with_help("paths are relative to the folder of the scene file"))
-}
-
-fn format(value: &Value) -> Result<Format, FileError> {
-    let chosen = value.choice(&Format::ALL.map(|(name, _)| name))?;
-    let format = Format::ALL.into_iter().find(|(name, _)| *name == chosen);
-    Ok(format.map_or(Format::Xyzr, |(_, format)| format))
 }
 
 /// Checks that a scene can hold more spheres, of which `held` bytes are allocated already; the error

@@ -1,34 +1,31 @@
 //! Values of a scene file: checks of type and range, used by every section.
 
 use super::block::Source;
-use crate::scene::{BRIGHTEST, FileError, Rgb};
-pub(super) use crate::settings::Limits;
+use crate::scene::{FileError, Rgb};
+use crate::settings::Limits;
 use crate::{color, suggest};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use std::ops::Range;
 use std::str::FromStr;
 use toml::de::{DeTable, DeValue};
 
-/// Limits of a radiance.
-pub(super) const LIGHT: Limits = Limits::Within(0.0, BRIGHTEST as f64);
-
 /// A value, its key and its position.
 #[derive(Clone)]
-pub(super) struct Value<'a> {
-    pub(super) source: &'a Source<'a>,
-    pub(super) name: &'static str,
-    pub(super) span: Range<usize>,
-    pub(super) item: &'a DeValue<'a>,
+pub(in crate::scene) struct Value<'a> {
+    pub(in crate::scene) source: &'a Source<'a>,
+    pub(in crate::scene) name: &'static str,
+    pub(in crate::scene) span: Range<usize>,
+    pub(in crate::scene) item: &'a DeValue<'a>,
 }
 
 impl<'a> Value<'a> {
     /// Returns an error at this value.
-    pub(super) fn error(&self, message: impl Into<String>) -> FileError {
+    pub(in crate::scene) fn error(&self, message: impl Into<String>) -> FileError {
         self.source.error(self.span.clone(), message)
     }
 
     /// Returns an error that says what the value must be.
-    pub(super) fn must_be(&self, expected: impl AsRef<str>) -> FileError {
+    pub(in crate::scene) fn must_be(&self, expected: impl AsRef<str>) -> FileError {
         let given = self.source.text.get(self.span.clone()).unwrap_or_default();
         let given = match self.item {
             DeValue::Table(_) => "a table".to_owned(),
@@ -39,13 +36,13 @@ impl<'a> Value<'a> {
     }
 
     /// Returns a number within limits.
-    pub(super) fn number(&self, limits: Limits) -> Result<f64, FileError> {
+    pub(in crate::scene) fn number(&self, limits: Limits) -> Result<f64, FileError> {
         let number: f64 = self.parse().ok_or_else(|| self.must_be("a number"))?;
         if limits.contain(number) { Ok(number) } else { Err(self.must_be(limits.describe())) }
     }
 
     /// Returns an integer within a range.
-    pub(super) fn whole(&self, low: u64, high: u64) -> Result<u64, FileError> {
+    pub(in crate::scene) fn whole(&self, low: u64, high: u64) -> Result<u64, FileError> {
         let expected = || format!("an integer from {low} to {high}");
         let DeValue::Integer(integer) = self.item else { return Err(self.must_be(expected())) };
         u64::from_str_radix(integer.as_str(), integer.radix())
@@ -55,17 +52,20 @@ impl<'a> Value<'a> {
     }
 
     /// Returns true or false.
-    pub(super) fn flag(&self) -> Result<bool, FileError> {
+    pub(in crate::scene) fn flag(&self) -> Result<bool, FileError> {
         self.item.as_bool().ok_or_else(|| self.must_be("true or false"))
     }
 
     /// Returns a string.
-    pub(super) fn text(&self) -> Result<&'a str, FileError> {
+    pub(in crate::scene) fn text(&self) -> Result<&'a str, FileError> {
         self.item.as_str().ok_or_else(|| self.must_be("a string in quotes"))
     }
 
     /// Returns one of several words.
-    pub(super) fn choice(&self, words: &[&'static str]) -> Result<&'static str, FileError> {
+    pub(in crate::scene) fn choice(
+        &self,
+        words: &[&'static str],
+    ) -> Result<&'static str, FileError> {
         let text = self.text()?;
         words.iter().copied().find(|&word| word == text).ok_or_else(|| {
             let help = suggest::help(text, words.iter().copied(), "possible values");
@@ -74,7 +74,7 @@ impl<'a> Value<'a> {
     }
 
     /// Returns `N` values.
-    pub(super) fn list<const N: usize>(&self) -> Result<[Self; N], FileError> {
+    pub(in crate::scene) fn list<const N: usize>(&self) -> Result<[Self; N], FileError> {
         let items = self.item.as_array().filter(|items| items.len() == N);
         let items = items.ok_or_else(|| self.must_be(format!("a list of {N} numbers")))?;
         let entry = |index: usize| {
@@ -85,7 +85,10 @@ impl<'a> Value<'a> {
     }
 
     /// Returns `N` numbers, each within limits.
-    pub(super) fn numbers<const N: usize>(&self, limits: Limits) -> Result<[f64; N], FileError> {
+    pub(in crate::scene) fn numbers<const N: usize>(
+        &self,
+        limits: Limits,
+    ) -> Result<[f64; N], FileError> {
         let mut numbers = [0.0; N];
         for (number, value) in numbers.iter_mut().zip(self.list::<N>()?) {
             *number = value.number(limits)?;
@@ -94,24 +97,35 @@ impl<'a> Value<'a> {
     }
 
     /// Returns a point, or a vector of any length.
-    pub(super) fn point(&self) -> Result<DVec3, FileError> {
+    pub(in crate::scene) fn point(&self) -> Result<DVec3, FileError> {
         self.numbers(Limits::Any).map(DVec3::from_array)
     }
 
     /// Returns a nonzero vector, as written.
-    pub(super) fn vector(&self) -> Result<DVec3, FileError> {
+    pub(in crate::scene) fn vector(&self) -> Result<DVec3, FileError> {
         let vector = self.point()?;
         if vector == DVec3::ZERO { Err(self.must_be("a nonzero vector")) } else { Ok(vector) }
     }
 
     /// Returns a direction: a nonzero vector, normalized.
-    pub(super) fn direction(&self) -> Result<DVec3, FileError> {
+    pub(in crate::scene) fn direction(&self) -> Result<DVec3, FileError> {
         self.vector().map(unit)
+    }
+
+    /// Returns a quaternion of any length but 0, its real part first, normalized.
+    pub(in crate::scene) fn quaternion(&self) -> Result<DQuat, FileError> {
+        let [w, x, y, z] = self.numbers(Limits::Any)?;
+        // Scaled first: squares of large and of small numbers have no length.
+        let largest = [w, x, y, z].into_iter().map(f64::abs).fold(0.0, f64::max);
+        if largest == 0.0 {
+            return Err(self.must_be("a quaternion [w, x, y, z] that is not 0"));
+        }
+        Ok(DQuat::from_xyzw(x / largest, y / largest, z / largest, w / largest).normalize())
     }
 
     /// Returns a color: three linear values, one for gray, or `"#rrggbb"` or a CSS name in sRGB; each
     /// value within limits.
-    pub(super) fn color(&self, limits: Limits) -> Result<Rgb, FileError> {
+    pub(in crate::scene) fn color(&self, limits: Limits) -> Result<Rgb, FileError> {
         match self.item {
             DeValue::Array(_) => {
                 let [red, green, blue] = self.list()?;
@@ -133,15 +147,9 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// Returns two colors, each as [`Value::color`] does.
-    pub(super) fn two_colors(&self, limits: Limits) -> Result<[Rgb; 2], FileError> {
-        let [first, second] = self.list()?;
-        Ok([first.color(limits)?, second.color(limits)?])
-    }
-
     /// Returns a number that is parsed in single precision, so that an `f32` survives writing and
     /// reading.
-    pub(super) fn single(&self, limits: Limits) -> Result<f32, FileError> {
+    pub(in crate::scene) fn single(&self, limits: Limits) -> Result<f32, FileError> {
         self.number(limits)?;
         let number: f32 = self.parse().ok_or_else(|| self.must_be("a number"))?;
         if limits.contain(f64::from(number)) {
@@ -152,7 +160,7 @@ impl<'a> Value<'a> {
     }
 
     /// Returns a table.
-    pub(super) fn table(&self) -> Result<&'a DeTable<'a>, FileError> {
+    pub(in crate::scene) fn table(&self) -> Result<&'a DeTable<'a>, FileError> {
         self.item.as_table().ok_or_else(|| self.must_be("a table"))
     }
 

@@ -3,9 +3,8 @@
 
 pub(super) mod sections;
 
-use self::sections::{
-    annotations, camera, environment, light, look, material, quoted, render, slice, vector,
-};
+use self::sections::{annotations, ground, look, quoted, render};
+use super::keys::{self, EnvironmentKeys, section_text};
 use super::{
     Camera, Environment, EnvironmentMap, FileError, Look, NamedMaterial, Rgb, Scene, Settings,
     Spheres, included_files,
@@ -143,29 +142,26 @@ pub fn text_without_columns(scene: &Scene) -> Result<String, String> {
 fn document(scene: &Scene, header: &Header, sky: &str) -> String {
     let mut text = format!("{MARK}title = {}\n\n", quoted(header.title));
     text += &render(header.settings);
-    text += &camera(header.camera);
+    text += &section_text(header.camera);
     text += &look(header.look);
     text += &annotations(&scene.annotations);
     text += sky;
-    for NamedMaterial { name, material: surface } in &scene.materials {
-        let _ = write!(text, "[material.{}]\n{}\n", quoted(name), material(surface));
+    for NamedMaterial { name, material } in &scene.materials {
+        let _ = write!(text, "[material.{}]\n{}\n", quoted(name), keys::text(material));
     }
-    if let Some(ground) = &scene.ground {
-        let normal = vector(ground.normal);
-        let material = quoted(&scene.materials[ground.material as usize].name);
-        let height = ground.height;
-        let _ = write!(
-            text,
-            "[ground]\nnormal = {normal}\nheight = {height:?}\nmaterial = {material}\n\n"
-        );
-    }
-    scene.slices.iter().for_each(|row| text += &slice(row));
-    scene.lights.iter().for_each(|row| text += &light(row));
+    text += &ground(scene);
+    text.extend(scene.slices.iter().map(section_text));
+    text.extend(scene.lights.iter().map(section_text));
     let name = |row: u32| quoted(&scene.materials[row as usize].name);
     text += &sections::sticks(&scene.sticks, name);
     text += &sections::ellipsoids(&scene.ellipsoids, name);
     text += &sections::cones(&scene.cones, name);
     text
+}
+
+/// The section of an environment; `picture` is the name of its picture's file, if it has one.
+pub(super) fn environment(environment: &Environment, picture: &str) -> String {
+    section_text(&EnvironmentKeys { environment: environment.clone(), file: picture.to_owned() })
 }
 
 /// The section that names the file of the spheres.

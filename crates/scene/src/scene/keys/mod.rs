@@ -1,0 +1,204 @@
+//! The keys of scene files, each described once: name, type, range, default and help.
+//!
+//! A `Section` shows its keys, one after the other, to a `Visitor`; `table.rs` has all sections. One
+//! visitor reads a section from a file (`file/block.rs`), others write it, check one that was built in
+//! code, and list its keys (`schema.rs`), for messages, the manual and the types of Python.
+
+mod kinds;
+mod schema;
+mod table;
+
+pub(in crate::scene) use kinds::Kind;
+pub(in crate::scene) use schema::Schema;
+pub(in crate::scene) use table::{
+    ConeKeys, EYE, EllipsoidKeys, EnvironmentKeys, FileKeys, GenerateKeys, GroundKeys, SECTIONS,
+    SphereKeys, StickKeys,
+};
+
+use super::write::sections::quoted;
+use super::{Camera, Light, NamedMaterial, Scene};
+use std::convert::Infallible;
+
+/// A section of a scene file.
+pub(in crate::scene) trait Section: Clone {
+    /// As a scene file writes it.
+    const NAME: &'static str;
+
+    /// Makes the section without keys. Required ones have any value.
+    const EMPTY: fn() -> Self;
+
+    /// Shows all keys that have a meaning for the section's kind, in the order in which they are written.
+    fn visit<V: Visitor>(&mut self, keys: &mut V) -> Result<(), V::Error>;
+}
+
+/// A key of a section.
+#[derive(Clone, Copy)]
+pub(in crate::scene) struct Key {
+    pub(in crate::scene) name: &'static str,
+    /// For the manual.
+    pub(in crate::scene) help: &'static str,
+    /// Only of a required key: what to write if it is missing.
+    pub(in crate::scene) example: Option<&'static str>,
+    /// The default in words, where it is not the value of an empty section, or when a key is required.
+    pub(in crate::scene) default: Option<&'static str>,
+}
+
+/// Returns an optional key.
+const fn key(name: &'static str, help: &'static str) -> Key {
+    Key { name, help, example: None, default: None }
+}
+
+impl Key {
+    /// Makes the key a required one; `example` is what to write if it is missing.
+    const fn required(self, example: &'static str) -> Self {
+        Self { example: Some(example), ..self }
+    }
+
+    /// Says the default in words.
+    const fn or(self, default: &'static str) -> Self {
+        Self { default: Some(default), ..self }
+    }
+}
+
+/// What reads, writes, checks or lists keys.
+pub(in crate::scene) trait Visitor: Sized {
+    /// The reason to stop.
+    type Error;
+
+    /// Visits a key and its value.
+    fn visit<K: Kind>(
+        &mut self,
+        key: Key,
+        kind: K,
+        value: &mut K::Value,
+    ) -> Result<(), Self::Error>;
+
+    /// Visits the key that chooses the section's kind, and so its other keys. Without it, unless it is
+    /// required, the kind is the first.
+    fn choose<T: Clone>(
+        &mut self,
+        key: Key,
+        kinds: &[(&'static str, T)],
+        value: &mut T,
+    ) -> Result<(), Self::Error>;
+
+    /// Refuses a value that contradicts another.
+    fn refuse(&mut self, _name: &'static str, _message: &str) -> Result<(), Self::Error> {
+        Ok(())
+    }
+
+    /// Visits a value whose form decides on keys, too: a form is chosen by any of its keys.
+    fn form<T: Clone>(&mut self, _forms: &[(&[&str], T)], _value: &mut T) {}
+}
+
+/// Writes a section's keys.
+struct Writer(String);
+
+impl Visitor for Writer {
+    type Error = Infallible;
+
+    fn visit<K: Kind>(
+        &mut self,
+        key: Key,
+        kind: K,
+        value: &mut K::Value,
+    ) -> Result<(), Infallible> {
+        if let Some(text) = kind.text(value) {
+            self.0.extend([key.name, " = ", &text, "\n"]);
+        }
+        Ok(())
+    }
+
+    fn choose<T: Clone>(
+        &mut self,
+        key: Key,
+        kinds: &[(&'static str, T)],
+        value: &mut T,
+    ) -> Result<(), Infallible> {
+        self.0.extend([key.name, " = ", &quoted(kinds::name_of(kinds, value)), "\n"]);
+        Ok(())
+    }
+}
+
+/// Checks that values are in range; holds the words for the key of a name.
+struct Checker<F>(F);
+
+impl<F: Fn(&str) -> String> Visitor for Checker<F> {
+    type Error = String;
+
+    fn visit<K: Kind>(&mut self, key: Key, kind: K, value: &mut K::Value) -> Result<(), String> {
+        if kind.contains(value) {
+            return Ok(());
+        }
+        let (whose, value, range) = (self.0(key.name), kind.brief(value), kind.words().range);
+        Err(format!("{whose} is {value}, but must be {range}"))
+    }
+
+    fn choose<T: Clone>(
+        &mut self,
+        _: Key,
+        _: &[(&'static str, T)],
+        _: &mut T,
+    ) -> Result<(), String> {
+        Ok(())
+    }
+}
+
+/// Returns the keys of a section as text, without the section's name.
+pub(in crate::scene) fn text(section: &impl Section) -> String {
+    let mut writer = Writer(String::new());
+    let Ok(()) = section.clone().visit(&mut writer);
+    writer.0
+}
+
+/// Returns a section as text.
+pub(in crate::scene) fn section_text<T: Section>(section: &T) -> String {
+    format!("{}\n{}\n", T::NAME, text(section))
+}
+
+/// Checks a section; `whose` puts the section into words, as in "the camera's `KEY`".
+fn check(section: &impl Section, whose: impl Fn(&str) -> String) -> Result<(), String> {
+    section.clone().visit(&mut Checker(whose))
+}
+
+/// Checks the ranges of a camera that was built in code.
+///
+/// # Errors
+///
+/// The message says what is out of range.
+pub fn check_camera(camera: &Camera) -> Result<(), String> {
+    check(camera, |key| format!("the camera's `{key}`"))
+}
+
+/// Checks the ranges of all sections of a scene that was built in code, but for settings, bodies and
+/// annotations.
+///
+/// # Errors
+///
+/// The message says what is out of range.
+pub fn check_sections(scene: &Scene) -> Result<(), String> {
+    check_camera(&scene.camera)?;
+    for NamedMaterial { name, material } in &scene.materials {
+        check(material, |key| format!("`{key}` of the material \"{name}\""))?;
+    }
+    for light in &scene.lights {
+        let whose = match light {
+            Light::Sun { .. } => "a sun",
+            Light::Point { .. } => "a point light",
+        };
+        check(light, |key| format!("the `{key}` of {whose}"))?;
+    }
+    for slice in &scene.slices {
+        check(slice, |key| format!("the `{key}` of a slice"))?;
+    }
+    let environment =
+        EnvironmentKeys { environment: scene.environment.clone(), file: String::new() };
+    check(&environment, |key| format!("the environment's `{key}`"))?;
+    if let Some(ground) = scene.ground.clone() {
+        check(&GroundKeys { ground, material: None }, |key| format!("the ground's `{key}`"))?;
+    }
+    check(&scene.look, |key| format!("the look's `{key}`"))
+}
+
+#[cfg(test)]
+mod tests;
