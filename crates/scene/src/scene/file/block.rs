@@ -4,6 +4,7 @@ use super::value::Value;
 use crate::scene::FileError;
 use crate::scene::keys::{Key, Kind, Schema, Section, Visitor};
 use crate::suggest;
+use std::fmt::Debug;
 use std::ops::Range;
 use std::path::Path;
 use std::rc::Rc;
@@ -62,8 +63,9 @@ impl<'a> Block<'a> {
     /// Reads the section; its keys must be those of the block's schema.
     pub(in crate::scene) fn read<T: Section>(&self) -> Result<T, FileError> {
         let mut section = (T::EMPTY)();
-        section.visit(&mut Reader(self))?;
-        Ok(section)
+        let mut reader = Reader { block: self, result: Ok(()) };
+        section.visit(&mut reader);
+        reader.result.map(|()| section)
     }
 
     /// Reads the section, if it exists, that a scene file writes as `[name]`.
@@ -217,45 +219,53 @@ impl<'a> Block<'a> {
     }
 }
 
-/// Reads the keys of a section.
-struct Reader<'b, 'a>(&'b Block<'a>);
+/// Reads the keys of a section, up to the first error.
+struct Reader<'b, 'a> {
+    block: &'b Block<'a>,
+    result: Result<(), FileError>,
+}
+
+impl Reader<'_, '_> {
+    fn read(&mut self, read: impl FnOnce(&Block) -> Result<(), FileError>) {
+        if self.result.is_ok() {
+            self.result = read(self.block);
+        }
+    }
+}
 
 impl Visitor for Reader<'_, '_> {
-    type Error = FileError;
-
-    fn visit<K: Kind>(&mut self, key: Key, kind: K, value: &mut K::Value) -> Result<(), FileError> {
-        let found = match key.example {
-            Some(example) => Some(self.0.need(key.name, example)?),
-            None => self.0.value(key.name),
-        };
-        if let Some(found) = found {
-            *value = kind.read(&found)?;
-        }
-        Ok(())
+    fn visit<T: Debug>(&mut self, key: Key, kind: impl Kind<T>, value: &mut T) {
+        self.read(|block| {
+            let found = match key.example {
+                Some(example) => Some(block.need(key.name, example)?),
+                None => block.value(key.name),
+            };
+            if let Some(found) = found {
+                *value = kind.read(&found)?;
+            }
+            Ok(())
+        });
     }
 
-    fn choose<T: Clone>(
-        &mut self,
-        _: Key,
-        kinds: &[(&'static str, T)],
-        value: &mut T,
-    ) -> Result<(), FileError> {
-        let kind = self.0.kind()?;
-        if let Some((_, of)) = kinds.iter().find(|(name, _)| *name == kind) {
-            value.clone_from(of);
-        }
-        Ok(())
+    fn choose<T: Clone>(&mut self, _: Key, kinds: &[(&'static str, T)], value: &mut T) {
+        self.read(|block| {
+            let kind = block.kind()?;
+            if let Some((_, of)) = kinds.iter().find(|(name, _)| *name == kind) {
+                value.clone_from(of);
+            }
+            Ok(())
+        });
     }
 
     fn form<T: Clone>(&mut self, forms: &[(&[&str], T)], value: &mut T) {
-        let given = |keys: &[&str]| keys.iter().any(|key| self.0.has(key));
+        let given = |keys: &[&str]| keys.iter().any(|key| self.block.has(key));
         if let Some((_, form)) = forms.iter().find(|(keys, _)| given(keys)) {
             value.clone_from(form);
         }
     }
 
-    fn refuse(&mut self, name: &'static str, message: &str) -> Result<(), FileError> {
-        Err(self.0.error_at(name, message))
+    fn refuse(&mut self, name: &'static str, message: &str) {
+        self.read(|block| Err(block.error_at(name, message)));
     }
 }
 

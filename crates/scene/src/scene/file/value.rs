@@ -132,18 +132,28 @@ impl<'a> Value<'a> {
                 Ok(Rgb::new(red.single(limits)?, green.single(limits)?, blue.single(limits)?))
             }
             DeValue::String(text) => color::parse(text).ok_or_else(|| {
-                let error =
-                    self.must_be("\"#rrggbb\" or the name of a CSS color if it is a string");
-                match suggest::nearest(text, color::names()) {
-                    Some(name) => error.with_help(format!("did you mean \"{name}\"?")),
-                    None => error,
-                }
+                let expected = "\"#rrggbb\" or the name of a CSS color if it is a string";
+                self.must_be_color(expected, text, &[])
             }),
             DeValue::Integer(_) | DeValue::Float(_) => self.single(limits).map(Rgb::splat),
             _ => {
                 Err(self
                     .must_be("[red, green, blue], one number for gray, \"#rrggbb\" or a CSS color"))
             }
+        }
+    }
+
+    /// Returns an error for a text that is neither a color nor one of these words.
+    pub(in crate::scene) fn must_be_color(
+        &self,
+        expected: &str,
+        text: &str,
+        words: &[&'static str],
+    ) -> FileError {
+        let error = self.must_be(expected);
+        match suggest::nearest(text, words.iter().copied().chain(color::names())) {
+            Some(near) => error.with_help(format!("did you mean \"{near}\"?")),
+            None => error,
         }
     }
 

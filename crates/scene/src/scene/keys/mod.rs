@@ -17,7 +17,7 @@ pub(in crate::scene) use table::{
 
 use super::write::sections::quoted;
 use super::{Camera, Light, NamedMaterial, Scene};
-use std::convert::Infallible;
+use std::fmt::Debug;
 
 /// A section of a scene file.
 pub(in crate::scene) trait Section: Clone {
@@ -28,7 +28,7 @@ pub(in crate::scene) trait Section: Clone {
     const EMPTY: fn() -> Self;
 
     /// Shows all keys that have a meaning for the section's kind, in the order in which they are written.
-    fn visit<V: Visitor>(&mut self, keys: &mut V) -> Result<(), V::Error>;
+    fn visit<V: Visitor>(&mut self, keys: &mut V);
 }
 
 /// A key of a section.
@@ -60,94 +60,58 @@ impl Key {
     }
 }
 
-/// What reads, writes, checks or lists keys.
+/// What reads, writes, checks or lists keys. The first error counts.
 pub(in crate::scene) trait Visitor: Sized {
-    /// The reason to stop.
-    type Error;
-
     /// Visits a key and its value.
-    fn visit<K: Kind>(
-        &mut self,
-        key: Key,
-        kind: K,
-        value: &mut K::Value,
-    ) -> Result<(), Self::Error>;
+    fn visit<T: Debug>(&mut self, key: Key, kind: impl Kind<T>, value: &mut T);
 
     /// Visits the key that chooses the section's kind, and so its other keys. Without it, unless it is
     /// required, the kind is the first.
-    fn choose<T: Clone>(
-        &mut self,
-        key: Key,
-        kinds: &[(&'static str, T)],
-        value: &mut T,
-    ) -> Result<(), Self::Error>;
-
-    /// Refuses a value that contradicts another.
-    fn refuse(&mut self, _name: &'static str, _message: &str) -> Result<(), Self::Error> {
-        Ok(())
-    }
+    fn choose<T: Clone>(&mut self, _key: Key, _kinds: &[(&'static str, T)], _value: &mut T) {}
 
     /// Visits a value whose form decides on keys, too: a form is chosen by any of its keys.
     fn form<T: Clone>(&mut self, _forms: &[(&[&str], T)], _value: &mut T) {}
+
+    /// Refuses a value that contradicts another.
+    fn refuse(&mut self, _name: &'static str, _message: &str) {}
 }
 
 /// Writes a section's keys.
 struct Writer(String);
 
 impl Visitor for Writer {
-    type Error = Infallible;
-
-    fn visit<K: Kind>(
-        &mut self,
-        key: Key,
-        kind: K,
-        value: &mut K::Value,
-    ) -> Result<(), Infallible> {
+    fn visit<T: Debug>(&mut self, key: Key, kind: impl Kind<T>, value: &mut T) {
         if let Some(text) = kind.text(value) {
             self.0.extend([key.name, " = ", &text, "\n"]);
         }
-        Ok(())
     }
 
-    fn choose<T: Clone>(
-        &mut self,
-        key: Key,
-        kinds: &[(&'static str, T)],
-        value: &mut T,
-    ) -> Result<(), Infallible> {
+    fn choose<T: Clone>(&mut self, key: Key, kinds: &[(&'static str, T)], value: &mut T) {
         self.0.extend([key.name, " = ", &quoted(kinds::name_of(kinds, value)), "\n"]);
-        Ok(())
     }
 }
 
-/// Checks that values are in range; holds the words for the key of a name.
-struct Checker<F>(F);
+/// Checks that values are in range.
+struct Checker<F> {
+    /// The words for the key of a name.
+    whose: F,
+    result: Result<(), String>,
+}
 
 impl<F: Fn(&str) -> String> Visitor for Checker<F> {
-    type Error = String;
-
-    fn visit<K: Kind>(&mut self, key: Key, kind: K, value: &mut K::Value) -> Result<(), String> {
-        if kind.contains(value) {
-            return Ok(());
+    fn visit<T: Debug>(&mut self, key: Key, kind: impl Kind<T>, value: &mut T) {
+        if self.result.is_ok() && !kind.contains(value) {
+            let (whose, value, range) =
+                ((self.whose)(key.name), kind.brief(value), kind.words().range);
+            self.result = Err(format!("{whose} is {value}, but must be {range}"));
         }
-        let (whose, value, range) = (self.0(key.name), kind.brief(value), kind.words().range);
-        Err(format!("{whose} is {value}, but must be {range}"))
-    }
-
-    fn choose<T: Clone>(
-        &mut self,
-        _: Key,
-        _: &[(&'static str, T)],
-        _: &mut T,
-    ) -> Result<(), String> {
-        Ok(())
     }
 }
 
 /// Returns the keys of a section as text, without the section's name.
 pub(in crate::scene) fn text(section: &impl Section) -> String {
     let mut writer = Writer(String::new());
-    let Ok(()) = section.clone().visit(&mut writer);
+    section.clone().visit(&mut writer);
     writer.0
 }
 
@@ -158,7 +122,9 @@ pub(in crate::scene) fn section_text<T: Section>(section: &T) -> String {
 
 /// Checks a section; `whose` puts the section into words, as in "the camera's `KEY`".
 fn check(section: &impl Section, whose: impl Fn(&str) -> String) -> Result<(), String> {
-    section.clone().visit(&mut Checker(whose))
+    let mut checker = Checker { whose, result: Ok(()) };
+    section.clone().visit(&mut checker);
+    checker.result
 }
 
 /// Checks the ranges of a camera that was built in code.

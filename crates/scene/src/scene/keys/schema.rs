@@ -3,7 +3,7 @@
 use super::kinds::{self, Kind, Words};
 use super::{Key, Section, Visitor};
 use crate::settings::{self, INTEGRATORS, SETTINGS, Scope};
-use std::convert::Infallible;
+use std::fmt::Debug;
 
 /// A section, its keys, and the kinds each key has a meaning for.
 #[derive(Default)]
@@ -44,7 +44,7 @@ impl Schema {
         let (mut run, mut runs) = (0, 1);
         while run < runs {
             let mut lister = Lister { schema, keys: Vec::new(), kind: "", rest: run, runs: 1 };
-            let Ok(()) = (T::EMPTY)().visit(&mut lister);
+            (T::EMPTY)().visit(&mut lister);
             // Only some kinds have forms.
             runs = runs.max(lister.runs);
             run += 1;
@@ -155,14 +155,7 @@ impl Lister {
 }
 
 impl Visitor for Lister {
-    type Error = Infallible;
-
-    fn visit<K: Kind>(
-        &mut self,
-        key: Key,
-        kind: K,
-        value: &mut K::Value,
-    ) -> Result<(), Infallible> {
+    fn visit<T: Debug>(&mut self, key: Key, kind: impl Kind<T>, value: &mut T) {
         let usual = || match kind.brief(value).as_str() {
             "\"\"" => "empty".to_owned(),
             "none" => "none".to_owned(),
@@ -172,15 +165,9 @@ impl Visitor for Lister {
         let default = (key.example.is_none() || key.default.is_some()).then_some(default);
         let Words { values, python, .. } = kind.words();
         self.keys.push((key.name, Description { help: key.help, values, default, python }));
-        Ok(())
     }
 
-    fn choose<T: Clone>(
-        &mut self,
-        key: Key,
-        kinds: &[(&'static str, T)],
-        value: &mut T,
-    ) -> Result<(), Infallible> {
+    fn choose<T: Clone>(&mut self, key: Key, kinds: &[(&'static str, T)], value: &mut T) {
         let names: Vec<_> = kinds.iter().map(|(name, _)| *name).collect();
         let index = self.pick(kinds.len());
         self.kind = names[index];
@@ -191,7 +178,6 @@ impl Visitor for Lister {
         let schema = &mut self.schema;
         (schema.selector, schema.kinds) = (key.name, names);
         schema.needs_kind = key.example.is_some();
-        Ok(())
     }
 
     fn form<T: Clone>(&mut self, forms: &[(&[&str], T)], value: &mut T) {

@@ -3,9 +3,7 @@
 
 use super::kinds::Str::{Name, Path, Text};
 use super::kinds::Triple::{Direction, Point, Vector};
-use super::kinds::{
-    Backdrop, Color, Entries, Flag, List, Number, Optional, Quaternion, Single, Whole, Word,
-};
+use super::kinds::{Backdrop, Entries, Flag, List, Optional, Quaternion, Whole, Word};
 use super::{Schema, Section, Visitor, key};
 use crate::color::{Map, Range, Scale, Spacing};
 use crate::image::Image;
@@ -16,7 +14,9 @@ use crate::scene::{
     EnvironmentMap, Ground, Insets, Label, Lens, Lettering, Light, Look, Material, Pose,
     Projection, Rgb, ScaleBar, Slice, SliceMode,
 };
-use crate::settings::Limits::{AboveTo, Any, Below, Between, NotNegative, Positive, Share, Within};
+use crate::settings::Limits::{
+    self, AboveTo, Any, Below, Between, NotNegative, Positive, Share, Within,
+};
 use glam::{DQuat, DVec3};
 use std::sync::Arc;
 
@@ -48,10 +48,7 @@ pub(in crate::scene) const SECTIONS: [(&str, SchemaOf); 20] = [
 ];
 
 /// Radiance and irradiance.
-const LIGHT: Color = Color(Within(0.0, BRIGHTEST as f64));
-
-/// Reflectance.
-const ALBEDO: Color = Color(Share);
+const LIGHT: Limits = Within(0.0, BRIGHTEST as f64);
 
 /// Default reflectance of matte materials.
 const GRAY: Rgb = Rgb::splat(0.7);
@@ -69,20 +66,20 @@ impl Section for Camera {
     const NAME: &'static str = "[camera]";
     const EMPTY: fn() -> Self = Self::default;
 
-    fn visit<V: Visitor>(&mut self, keys: &mut V) -> Result<(), V::Error> {
+    fn visit<V: Visitor>(&mut self, keys: &mut V) {
         let Self { projection, pose, up, lens, near, insets } = self;
         let parallel = Projection::Orthographic { height: None };
         let kinds = [("perspective", Self::default().projection), ("orthographic", parallel)];
-        keys.choose(key("projection", "perspective or parallel projection"), &kinds, projection)?;
+        keys.choose(key("projection", "perspective or parallel projection"), &kinds, projection);
         match projection {
             Projection::Perspective { fov } => {
                 let help = "vertical field of view, degrees";
-                keys.visit(key("fov", help), Number(Between(0.0, 180.0)), fov)?;
+                keys.visit(key("fov", help), Between(0.0, 180.0), fov);
             }
             Projection::Orthographic { height } => {
                 let help = "height of the image in the scene's unit";
                 let default = "such that all spheres are framed";
-                keys.visit(key("height", help).or(default), Optional(Number(Positive)), height)?;
+                keys.visit(key("height", help).or(default), Optional(Positive), height);
             }
         }
         let origin = Pose::LookAt { eye: DVec3::ZERO, target: DVec3::ZERO };
@@ -91,43 +88,42 @@ impl Section for Camera {
             Pose::LookAt { eye, target } => {
                 let own = key("eye", "position of the camera");
                 let own = own.required(EYE).or("with `target`, or neither");
-                keys.visit(own, Point, eye)?;
+                keys.visit(own, Point, eye);
                 let example = "target = [x, y, z]: the point in the middle of the picture";
                 let own = key("target", "point in the center of the image, not that of `eye`");
-                keys.visit(own.required(example).or("with `eye`, or neither"), Point, target)?;
+                keys.visit(own.required(example).or("with `eye`, or neither"), Point, target);
             }
             Pose::Fit { direction, margin } => {
                 let help = "place the camera as close as possible with all spheres in the image; \
                             replaces `eye` and `target`";
-                keys.visit(key("fit", help).or("`true` without those"), Flag, &mut true)?;
+                keys.visit(key("fit", help).or("`true` without those"), Flag, &mut true);
                 let help = "with `fit`: the view direction, from the camera into the scene";
-                keys.visit(key("direction", help), Vector, direction)?;
+                keys.visit(key("direction", help), Vector, direction);
                 let help = "with `fit`: fraction of the image left empty at its edges";
-                keys.visit(key("margin", help), Number(Below(0.0, 1.0)), margin)?;
+                keys.visit(key("margin", help), Below(0.0, 1.0), margin);
             }
         }
-        keys.visit(key("up", "approximate up direction of the image"), Vector, up)?;
+        keys.visit(key("up", "approximate up direction of the image"), Vector, up);
         let help = "distance of the near plane along the view axis, at which rays start";
-        keys.visit(key("near", help), Number(NotNegative), near)?;
+        keys.visit(key("near", help), NotNegative, near);
         let mut aperture = lens.map(|lens| lens.aperture);
         let help = "diameter of the thin lens; 0 is a pinhole";
-        keys.visit(key("aperture", help).or("0"), Optional(Number(NotNegative)), &mut aperture)?;
+        keys.visit(key("aperture", help).or("0"), Optional(NotNegative), &mut aperture);
         let mut focus = lens.and_then(|lens| lens.focus);
         let help = "with `aperture`: focus distance along the view axis";
         let default = "the distance of `target`, or of the center of the spheres";
-        keys.visit(key("focus", help).or(default), Optional(Number(Positive)), &mut focus)?;
+        keys.visit(key("focus", help).or(default), Optional(Positive), &mut focus);
         *lens = aperture.map(|aperture| Lens { aperture, focus });
         let fits = matches!(pose, Pose::Fit { .. }) && *insets != Insets::default();
         let mut own = fits.then(|| insets.to_array());
         let help = "with `fit`: fractions of the image left empty at the left, the right, the bottom \
                     and the top, besides the margin";
         let default = "those that [annotations](#color_bar) need";
-        let kind = Optional(List::<4, _>(Number(Below(0.0, 1.0))));
-        keys.visit(key("insets", help).or(default), kind, &mut own)?;
+        let kind = Optional(List(Below(0.0, 1.0)));
+        keys.visit(key("insets", help).or(default), kind, &mut own);
         if let Some([left, right, bottom, top]) = own {
             *insets = Insets { left, right, bottom, top };
         }
-        Ok(())
     }
 }
 
@@ -135,34 +131,29 @@ impl Section for Look {
     const NAME: &'static str = "[look]";
     const EMPTY: fn() -> Self = Self::default;
 
-    fn visit<V: Visitor>(&mut self, keys: &mut V) -> Result<(), V::Error> {
+    fn visit<V: Visitor>(&mut self, keys: &mut V) {
         let Self { background, depth_cue, outline, cell } = self;
         let help = "visible background, which does not change the light of the sky: the sky, a color \
                     (before `exposure`) that the camera sees instead of sky and suns, also through \
                     glass, or transparent, with alpha in PNG and EXR and only the shadows of a ground";
-        keys.visit(key("background", help), Backdrop(LIGHT), background)?;
+        keys.visit(key("background", help), Backdrop(LIGHT), background);
         let help =
             "fade distant spheres into the background, or into white without a background color";
-        keys.visit(key("depth_cue", help), Flag, depth_cue)?;
-        keys.visit(key("outline", "draw lines along the edges of spheres"), Flag, outline)?;
+        keys.visit(key("depth_cue", help), Flag, depth_cue);
+        keys.visit(key("outline", "draw lines along the edges of spheres"), Flag, outline);
         let help = "periodic cell whose edges are drawn, hidden behind nearer spheres: a corner and \
                     the three edge vectors; with `fit`, the camera frames it too";
         let edges = |Cell { origin, vectors: [a, b, c], .. }| [origin, a, b, c];
         let mut own = cell.map(edges);
-        keys.visit(key("cell", help), Optional(List::<4, _>(Point)), &mut own)?;
+        keys.visit(key("cell", help), Optional(List(Point)), &mut own);
         *cell =
             own.map(|[origin, a, b, c]| Cell { origin, vectors: [a, b, c], periodic: [false; 3] });
-        Ok(())
     }
 }
 
 /// Visits the key of an annotation's position.
-fn position<V: Visitor>(
-    keys: &mut V,
-    anchor: &mut Anchor,
-    help: &'static str,
-) -> Result<(), V::Error> {
-    keys.visit(key("position", help), Word(&Anchor::ALL), anchor)
+fn position<V: Visitor>(keys: &mut V, anchor: &mut Anchor, help: &'static str) {
+    keys.visit(key("position", help), Word(&Anchor::ALL), anchor);
 }
 
 impl Section for ColorBar {
@@ -172,25 +163,25 @@ impl Section for ColorBar {
         Self { scale, label: String::new(), position: Anchor::BottomRight }
     };
 
-    fn visit<V: Visitor>(&mut self, keys: &mut V) -> Result<(), V::Error> {
+    fn visit<V: Visitor>(&mut self, keys: &mut V) {
         // Colors for what is beyond the range have no words in a scene file.
         let Self { scale: Scale { map, reversed, range, .. }, label, position } = self;
         let mut ends = [range.low(), range.high()];
         let example = "range = [low, high]: the numbers at the ends of the map";
         let help = "the numbers at the two ends of the map, the lower one first";
-        keys.visit(key("range", help).required(example), List::<2, _>(Number(Any)), &mut ends)?;
+        keys.visit(key("range", help).required(example), List(Any), &mut ends);
         let mut log = range.spacing() == Spacing::Logarithmic;
-        keys.visit(key("log", "logarithmic scale"), Flag, &mut log)?;
+        keys.visit(key("log", "logarithmic scale"), Flag, &mut log);
         let spacing = if log { Spacing::Logarithmic } else { Spacing::Linear };
         match Range::new(ends[0], ends[1], spacing) {
             Ok(own) => *range = own,
-            Err(error) => keys.refuse("range", &error.to_string())?,
+            Err(error) => keys.refuse("range", &error.to_string()),
         }
-        keys.visit(key("map", "the color map"), Word(&Map::ALL.map(|map| (map.name(), map))), map)?;
-        keys.visit(key("reversed", "reverse the color map"), Flag, reversed)?;
-        keys.visit(key("label", "label"), Text, label)?;
+        keys.visit(key("map", "the color map"), Word(&Map::ALL.map(|map| (map.name(), map))), map);
+        keys.visit(key("reversed", "reverse the color map"), Flag, reversed);
+        keys.visit(key("label", "label"), Text, label);
         let help = "position of the color bar, which is horizontal at `\"top\"` and `\"bottom\"`";
-        self::position(keys, position, help)
+        self::position(keys, position, help);
     }
 }
 
@@ -198,15 +189,15 @@ impl Section for ColorLegend {
     const NAME: &'static str = "[legend]";
     const EMPTY: fn() -> Self = || Self { position: Anchor::TopRight, ..Self::default() };
 
-    fn visit<V: Visitor>(&mut self, keys: &mut V) -> Result<(), V::Error> {
+    fn visit<V: Visitor>(&mut self, keys: &mut V) {
         let Self { label, entries, omitted, position } = self;
         let example = "entries = [[\"name\", color], ...]: a name and a color for each line";
         let help = "names and colors from top to bottom";
-        keys.visit(key("entries", help).required(example), Entries(ALBEDO), entries)?;
+        keys.visit(key("entries", help).required(example), Entries(Share), entries);
         let help = "number of further names that a last line mentions";
-        keys.visit(key("omitted", help), Whole(0, u32::MAX as u64), omitted)?;
-        keys.visit(key("label", "first line"), Text, label)?;
-        self::position(keys, position, "position")
+        keys.visit(key("omitted", help), Whole(0, u32::MAX as u64), omitted);
+        keys.visit(key("label", "first line"), Text, label);
+        self::position(keys, position, "position");
     }
 }
 
@@ -214,12 +205,12 @@ impl Section for AxisTripod {
     const NAME: &'static str = "[axes]";
     const EMPTY: fn() -> Self = Self::default;
 
-    fn visit<V: Visitor>(&mut self, keys: &mut V) -> Result<(), V::Error> {
+    fn visit<V: Visitor>(&mut self, keys: &mut V) {
         let Self { directions, names, position } = self;
         let help = "directions of the arrows, which have equal lengths in space";
-        keys.visit(key("directions", help), List::<3, _>(Vector), directions)?;
-        keys.visit(key("names", "names of the arrows"), List::<3, _>(Text), names)?;
-        self::position(keys, position, "position")
+        keys.visit(key("directions", help), List(Vector), directions);
+        keys.visit(key("names", "names of the arrows"), List(Text), names);
+        self::position(keys, position, "position");
     }
 }
 
@@ -227,13 +218,13 @@ impl Section for ScaleBar {
     const NAME: &'static str = "[scale_bar]";
     const EMPTY: fn() -> Self = Self::default;
 
-    fn visit<V: Visitor>(&mut self, keys: &mut V) -> Result<(), V::Error> {
+    fn visit<V: Visitor>(&mut self, keys: &mut V) {
         let Self { length, unit, position } = self;
         let default = "a round number, up to a quarter of the image's width";
         let help = "length in the scene's unit";
-        keys.visit(key("length", help).or(default), Optional(Number(Positive)), length)?;
-        keys.visit(key("unit", "name of the scene's unit"), Text, unit)?;
-        self::position(keys, position, "position")
+        keys.visit(key("length", help).or(default), Optional(Positive), length);
+        keys.visit(key("unit", "name of the scene's unit"), Text, unit);
+        self::position(keys, position, "position");
     }
 }
 
@@ -241,14 +232,14 @@ impl Section for Label {
     const NAME: &'static str = "[[label]]";
     const EMPTY: fn() -> Self = || Self { text: String::new(), position: Anchor::TopLeft };
 
-    fn visit<V: Visitor>(&mut self, keys: &mut V) -> Result<(), V::Error> {
+    fn visit<V: Visitor>(&mut self, keys: &mut V) {
         let Self { text, position } = self;
         keys.visit(
             key("text", "text, of one or more lines").required("text = \"the label\""),
             Text,
             text,
-        )?;
-        self::position(keys, position, "position")
+        );
+        self::position(keys, position, "position");
     }
 }
 
@@ -256,14 +247,14 @@ impl Section for Lettering {
     const NAME: &'static str = "[lettering]";
     const EMPTY: fn() -> Self = Self::default;
 
-    fn visit<V: Visitor>(&mut self, keys: &mut V) -> Result<(), V::Error> {
+    fn visit<V: Visitor>(&mut self, keys: &mut V) {
         let Self { size, color } = self;
         let range = Within(*Self::SIZES.start(), *Self::SIZES.end());
         let help = "size of the letters as a fraction of the image's smaller side; smaller where \
                     annotations would overlap";
-        keys.visit(key("size", help), Number(range), size)?;
+        keys.visit(key("size", help), range, size);
         let default = "dark or light, in contrast with the background";
-        keys.visit(key("color", "color of letters").or(default), Optional(LIGHT), color)
+        keys.visit(key("color", "color of letters").or(default), Optional(LIGHT), color);
     }
 }
 
@@ -280,7 +271,7 @@ impl Section for EnvironmentKeys {
     const EMPTY: fn() -> Self =
         || Self { environment: Environment::default(), file: String::new() };
 
-    fn visit<V: Visitor>(&mut self, keys: &mut V) -> Result<(), V::Error> {
+    fn visit<V: Visitor>(&mut self, keys: &mut V) {
         let Environment { map, illuminates } = &mut self.environment;
         let (bottom, top, up) = (Rgb::ONE, Rgb::new(0.5, 0.7, 1.0), DVec3::Y);
         let image = Arc::new(Image { width: 0, height: 0, pixels: Vec::new() });
@@ -290,43 +281,39 @@ impl Section for EnvironmentKeys {
             ("picture", EnvironmentMap::Picture { image, up, rotation: 0.0, scale: 1.0 }),
         ];
         let help = "constant radiance, a gradient, or an environment map";
-        keys.choose(key("kind", help), &kinds, map)?;
+        keys.choose(key("kind", help), &kinds, map);
         let up_help = "up direction";
         match map {
             EnvironmentMap::Constant(color) => {
-                keys.visit(key("color", "the radiance"), LIGHT, color)?;
+                keys.visit(key("color", "the radiance"), LIGHT, color);
             }
             EnvironmentMap::Gradient { bottom, top, up } => {
-                keys.visit(key("bottom", "radiance from straight below"), LIGHT, bottom)?;
+                keys.visit(key("bottom", "radiance from straight below"), LIGHT, bottom);
                 let help = "radiance from straight above; in between, it is linear in the cosine of \
                             the angle to `up`";
-                keys.visit(key("top", help), LIGHT, top)?;
-                keys.visit(key("up", up_help), Direction, up)?;
+                keys.visit(key("top", help), LIGHT, top);
+                keys.visit(key("up", up_help), Direction, up);
             }
             EnvironmentMap::Picture { image: _, up, rotation, scale } => {
                 let example = "file = \"sky.hdr\": a latitude-longitude picture";
                 let help = "latitude-longitude image whose first row is at `up`, seen from inside as \
                             it is painted; its values are linear, finite and 0 or more";
-                keys.visit(key("file", help).required(example), Path, &mut self.file)?;
-                keys.visit(key("up", up_help), Direction, up)?;
+                keys.visit(key("file", help).required(example), Path, &mut self.file);
+                keys.visit(key("up", up_help), Direction, up);
                 let help = "rotation of the image about `up` in degrees";
-                keys.visit(key("rotation", help), Number(Any), rotation)?;
-                keys.visit(key("scale", "factor for its values"), Single(NotNegative), scale)?;
+                keys.visit(key("rotation", help), Any, rotation);
+                keys.visit(key("scale", "factor for its values"), NotNegative, scale);
             }
         }
         let help = "whether the environment lights diffuse surfaces; with `false` only the camera, \
                     mirrors and glass see it";
-        keys.visit(key("illuminates", help), Flag, illuminates)
+        keys.visit(key("illuminates", help), Flag, illuminates);
     }
 }
 
 /// Visits the key of a material, whose name is in quotes.
-fn material<V: Visitor>(
-    keys: &mut V,
-    name: &mut Option<String>,
-    help: &'static str,
-) -> Result<(), V::Error> {
-    keys.visit(key("material", help).or("`default`"), Optional(Name), name)
+fn material<V: Visitor>(keys: &mut V, name: &mut Option<String>, help: &'static str) {
+    keys.visit(key("material", help).or("`default`"), Optional(Name), name);
 }
 
 /// `[ground]`.
@@ -345,13 +332,13 @@ impl Section for GroundKeys {
         Self { ground, material: None }
     };
 
-    fn visit<V: Visitor>(&mut self, keys: &mut V) -> Result<(), V::Error> {
+    fn visit<V: Visitor>(&mut self, keys: &mut V) {
         let Ground { normal, height, material: _ } = &mut self.ground;
-        keys.visit(key("normal", "normal of the plane"), Direction, normal)?;
+        keys.visit(key("normal", "normal of the plane"), Direction, normal);
         let help = "signed distance from the origin along the normal";
-        keys.visit(key("height", help), Number(Any), height)?;
+        keys.visit(key("height", help), Any, height);
         let help = "material; neither a dielectric nor an emitter";
-        material(keys, &mut self.material, help)
+        material(keys, &mut self.material, help);
     }
 }
 
@@ -360,18 +347,18 @@ impl Section for Slice {
     const EMPTY: fn() -> Self =
         || Self { normal: DVec3::Y, distance: 0.0, mode: SliceMode::default() };
 
-    fn visit<V: Visitor>(&mut self, keys: &mut V) -> Result<(), V::Error> {
+    fn visit<V: Visitor>(&mut self, keys: &mut V) {
         let Self { normal, distance, mode } = self;
         let example = "normal = [x, y, z], toward the part that is cut away";
         let help = "normal of the plane, toward the side that is cut away";
-        keys.visit(key("normal", help).required(example), Direction, normal)?;
+        keys.visit(key("normal", help).required(example), Direction, normal);
         let help = "signed distance of the plane from the origin along the normal";
-        keys.visit(key("distance", help), Number(Any), distance)?;
+        keys.visit(key("distance", help), Any, distance);
         let help = "`\"remove\"`: removes spheres whose centers are cut away, and keeps others whole; \
                     `\"caps\"`: cuts spheres at the plane, with flat caps of their own color; \
                     `\"hide\"`: hides spheres whose centers are cut away from camera rays, but keeps \
                     their shadows and reflections";
-        keys.visit(key("mode", help), Word(&SliceMode::ALL), mode)
+        keys.visit(key("mode", help), Word(&SliceMode::ALL), mode);
     }
 }
 
@@ -380,41 +367,37 @@ impl Section for Light {
     const EMPTY: fn() -> Self =
         || Self::Sun { direction: DVec3::Y, irradiance: Rgb::ONE, angular_radius: SUN };
 
-    fn visit<V: Visitor>(&mut self, keys: &mut V) -> Result<(), V::Error> {
+    fn visit<V: Visitor>(&mut self, keys: &mut V) {
         let point = Self::Point { position: DVec3::ZERO, intensity: Rgb::ONE, falloff: true };
         let kinds = [("sun", (Self::EMPTY)()), ("point", point)];
-        keys.choose(key("kind", "a disc at infinity, or a point").required(""), &kinds, self)?;
+        keys.choose(key("kind", "a disc at infinity, or a point").required(""), &kinds, self);
         match self {
             Self::Sun { direction, irradiance, angular_radius } => {
                 let example = "direction = [x, y, z], toward the sun";
                 let help = "direction from the scene toward the sun";
-                keys.visit(key("direction", help).required(example), Direction, direction)?;
+                keys.visit(key("direction", help).required(example), Direction, direction);
                 let example = "irradiance = [r, g, b], or a number for white";
                 let help = "irradiance of a plane that faces the sun";
-                keys.visit(key("irradiance", help).required(example), LIGHT, irradiance)?;
+                keys.visit(key("irradiance", help).required(example), LIGHT, irradiance);
                 let help = "angular radius in degrees; with 0, shadows are sharp and mirrors do not \
                             show the sun";
-                keys.visit(key("angular_radius", help), Number(Below(0.0, 90.0)), angular_radius)
+                keys.visit(key("angular_radius", help), Below(0.0, 90.0), angular_radius);
             }
             Self::Point { position, intensity, falloff } => {
                 keys.visit(
                     key("position", "position").required("position = [x, y, z]"),
                     Point,
                     position,
-                )?;
+                );
                 let example = "intensity = [r, g, b], or a number for white";
                 let help = "radiant intensity; without falloff, the irradiance at any distance";
-                keys.visit(
-                    key("intensity", help).required(example),
-                    Color(NotNegative),
-                    intensity,
-                )?;
+                keys.visit(key("intensity", help).required(example), NotNegative, intensity);
                 let help = "inverse-square falloff, or none as in NFF files";
                 keys.visit(
                     key("falloff", help),
                     Word(&[("square", true), ("none", false)]),
                     falloff,
-                )
+                );
             }
         }
     }
@@ -424,7 +407,7 @@ impl Section for Material {
     const NAME: &'static str = "[material.NAME]";
     const EMPTY: fn() -> Self = || Self::Lambertian { color: GRAY };
 
-    fn visit<V: Visitor>(&mut self, keys: &mut V) -> Result<(), V::Error> {
+    fn visit<V: Visitor>(&mut self, keys: &mut V) {
         let fresnel = ConductorFresnel::Schlick(GRAY);
         let kinds = [
             ("lambertian", (Self::EMPTY)()),
@@ -439,50 +422,45 @@ impl Section for Material {
             _ => None,
         };
         let mut surface = self.surface().clone();
-        keys.choose(key("kind", "see below").required(""), &kinds, &mut surface)?;
+        keys.choose(key("kind", "see below").required(""), &kinds, &mut surface);
         let color_help = "fraction of light that is reflected or transmitted";
         match &mut surface {
-            Self::Lambertian { color } => keys.visit(key("color", color_help), ALBEDO, color)?,
+            Self::Lambertian { color } => keys.visit(key("color", color_help), Share, color),
             Self::Conductor { fresnel, roughness } => {
-                conductor(keys, fresnel, color_help)?;
+                conductor(keys, fresnel, color_help);
                 let help = "GGX alpha; 0 is a smooth mirror";
-                keys.visit(key("roughness", help), Number(Share), roughness)?;
+                keys.visit(key("roughness", help), Share, roughness);
             }
             Self::Dielectric { ior, color } => {
-                keys.visit(key("ior", "index of refraction"), Number(Positive), ior)?;
-                keys.visit(key("color", color_help), ALBEDO, color)?;
+                keys.visit(key("ior", "index of refraction"), Positive, ior);
+                keys.visit(key("color", color_help), Share, color);
             }
             Self::Plastic { color, ior } => {
-                keys.visit(key("color", color_help), ALBEDO, color)?;
-                keys.visit(key("ior", "index of refraction"), Number(AboveTo(1.0, f64::MAX)), ior)?;
+                keys.visit(key("color", color_help), Share, color);
+                keys.visit(key("ior", "index of refraction"), AboveTo(1.0, f64::MAX), ior);
             }
             Self::Reflective { color, diffuse, mirror } => {
-                keys.visit(key("color", color_help), ALBEDO, color)?;
-                keys.visit(key("diffuse", "fraction reflected diffusely"), Number(Share), diffuse)?;
+                keys.visit(key("color", color_help), Share, color);
+                keys.visit(key("diffuse", "fraction reflected diffusely"), Share, diffuse);
                 let help = "fraction mirrored; the sum with `diffuse` is at most 1";
-                keys.visit(key("mirror", help), Number(Share), mirror)?;
+                keys.visit(key("mirror", help), Share, mirror);
             }
             Self::Emitter { radiance, albedo } => {
                 let example = "radiance = [r, g, b], or a number for white";
-                keys.visit(key("radiance", "emitted radiance").required(example), LIGHT, radiance)?;
-                keys.visit(key("albedo", "reflectance"), ALBEDO, albedo)?;
+                keys.visit(key("radiance", "emitted radiance").required(example), LIGHT, radiance);
+                keys.visit(key("albedo", "reflectance"), Share, albedo);
             }
             Self::Translucent { .. } => (),
         }
         if surface.is_solid() {
             let help = "fraction of the light from behind that a body hides, without refraction";
-            keys.visit(key("opacity", help).or("1"), Optional(Number(Share)), &mut opacity)?;
+            keys.visit(key("opacity", help).or("1"), Optional(Share), &mut opacity);
         }
         *self = opacity.map_or_else(|| surface.clone(), |opacity| surface.with_opacity(opacity));
-        Ok(())
     }
 }
 
-fn conductor<V: Visitor>(
-    keys: &mut V,
-    fresnel: &mut ConductorFresnel,
-    help: &'static str,
-) -> Result<(), V::Error> {
+fn conductor<V: Visitor>(keys: &mut V, fresnel: &mut ConductorFresnel, help: &'static str) {
     let exact = ConductorFresnel::Exact { eta: Rgb::ONE, k: Rgb::ONE };
     keys.form(&[(&["eta", "k"], exact), (&[], *fresnel)], fresnel);
     let mut constant = matches!(fresnel, ConductorFresnel::Constant(_));
@@ -491,25 +469,24 @@ fn conductor<V: Visitor>(
             let mut color = *color;
             let example = "color = [r, g, b], the reflectance at normal incidence, or eta and k";
             let own = key("color", help).required(example);
-            keys.visit(own.or("*required* without `eta` and `k`"), ALBEDO, &mut color)?;
+            keys.visit(own.or("*required* without `eta` and `k`"), Share, &mut color);
             let words = [("schlick", false), ("constant", true)];
             let help = "reflectance by `color` rises to 1 at grazing angles (`\"schlick\"`), or is \
                         constant (`\"constant\"`)";
-            keys.visit(key("fresnel", help), Word(&words), &mut constant)?;
+            keys.visit(key("fresnel", help), Word(&words), &mut constant);
             *fresnel = if constant {
                 ConductorFresnel::Constant(color)
             } else {
                 ConductorFresnel::Schlick(color)
             };
-            Ok(())
         }
         ConductorFresnel::Exact { eta, k } => {
             let example = "eta = [r, g, b]: the real part of the index of refraction";
             let own = key("eta", "real part of the index of refraction, instead of `color`");
-            keys.visit(own.required(example).or("with `k`, or neither"), Color(Positive), eta)?;
+            keys.visit(own.required(example).or("with `k`, or neither"), Positive, eta);
             let example = "k = [r, g, b]: the imaginary part of the index of refraction";
             let own = key("k", "imaginary part of the index of refraction");
-            keys.visit(own.required(example).or("with `eta`, or neither"), Color(Positive), k)
+            keys.visit(own.required(example).or("with `eta`, or neither"), Positive, k);
         }
     }
 }
@@ -518,8 +495,8 @@ fn conductor<V: Visitor>(
 const SOLID: &str = "material, not glass and not an emitter";
 
 /// Visits the key of a body's color.
-fn color<V: Visitor>(keys: &mut V, color: &mut Rgb) -> Result<(), V::Error> {
-    keys.visit(key("color", "factor for the material's color"), ALBEDO, color)
+fn color<V: Visitor>(keys: &mut V, color: &mut Rgb) {
+    keys.visit(key("color", "factor for the material's color"), Share, color);
 }
 
 /// `[[sphere]]`.
@@ -539,12 +516,12 @@ impl Section for SphereKeys {
     const EMPTY: fn() -> Self =
         || Self { center: DVec3::ZERO, radius: 1.0, material: None, color: Rgb::ONE };
 
-    fn visit<V: Visitor>(&mut self, keys: &mut V) -> Result<(), V::Error> {
+    fn visit<V: Visitor>(&mut self, keys: &mut V) {
         let Self { center, radius, material, color } = self;
-        keys.visit(key("center", "center").required("center = [x, y, z]"), Point, center)?;
-        keys.visit(key("radius", "radius").required(RADIUS), Number(Positive), radius)?;
-        self::material(keys, material, "material")?;
-        self::color(keys, color)
+        keys.visit(key("center", "center").required("center = [x, y, z]"), Point, center);
+        keys.visit(key("radius", "radius").required(RADIUS), Positive, radius);
+        self::material(keys, material, "material");
+        self::color(keys, color);
     }
 }
 
@@ -565,27 +542,15 @@ impl Section for StickKeys {
         Self { ends, radius: 1.0, material: None, color: None, colors: None }
     };
 
-    fn visit<V: Visitor>(&mut self, keys: &mut V) -> Result<(), V::Error> {
+    fn visit<V: Visitor>(&mut self, keys: &mut V) {
         let Self { ends: [from, to], radius, material, color, colors } = self;
-        keys.visit(
-            key("from", "one end of the segment").required("from = [x, y, z]"),
-            Point,
-            from,
-        )?;
-        keys.visit(
-            key("to", "the other end of the segment").required("to = [x, y, z]"),
-            Point,
-            to,
-        )?;
-        keys.visit(key("radius", "radius").required(RADIUS), Number(Positive), radius)?;
-        self::material(keys, material, SOLID)?;
-        keys.visit(
-            key("color", "factor for the material's color").or("1"),
-            Optional(ALBEDO),
-            color,
-        )?;
+        keys.visit(key("from", "one end of the segment").required("from = [x, y, z]"), Point, from);
+        keys.visit(key("to", "the other end of the segment").required("to = [x, y, z]"), Point, to);
+        keys.visit(key("radius", "radius").required(RADIUS), Positive, radius);
+        self::material(keys, material, SOLID);
+        keys.visit(key("color", "factor for the material's color").or("1"), Optional(Share), color);
         let help = "factors for the half at `from` and for that at `to`, in place of `color`";
-        keys.visit(key("colors", help), Optional(List::<2, _>(ALBEDO)), colors)
+        keys.visit(key("colors", help), Optional(List(Share)), colors);
     }
 }
 
@@ -606,20 +571,16 @@ impl Section for EllipsoidKeys {
         Self { center, semi_axes: [1.0; 3], orientation, material: None, color: Rgb::ONE }
     };
 
-    fn visit<V: Visitor>(&mut self, keys: &mut V) -> Result<(), V::Error> {
+    fn visit<V: Visitor>(&mut self, keys: &mut V) {
         let Self { center, semi_axes, orientation, material, color } = self;
-        keys.visit(key("center", "center").required("center = [x, y, z]"), Point, center)?;
+        keys.visit(key("center", "center").required("center = [x, y, z]"), Point, center);
         let example = "semi_axes = three numbers greater than 0";
         let help = "half of the lengths along x, y and z, before the rotation, none more than 16384 \
                     times another";
-        keys.visit(
-            key("semi_axes", help).required(example),
-            List::<3, _>(Number(Positive)),
-            semi_axes,
-        )?;
-        keys.visit(key("orientation", "rotation"), Quaternion, orientation)?;
-        self::material(keys, material, SOLID)?;
-        self::color(keys, color)
+        keys.visit(key("semi_axes", help).required(example), List(Positive), semi_axes);
+        keys.visit(key("orientation", "rotation"), Quaternion, orientation);
+        self::material(keys, material, SOLID);
+        self::color(keys, color);
     }
 }
 
@@ -640,16 +601,16 @@ impl Section for ConeKeys {
         Self { apex, base, radius: 1.0, material: None, color: Rgb::ONE }
     };
 
-    fn visit<V: Visitor>(&mut self, keys: &mut V) -> Result<(), V::Error> {
+    fn visit<V: Visitor>(&mut self, keys: &mut V) {
         let Self { apex, base, radius, material, color } = self;
-        keys.visit(key("apex", "the tip").required("apex = [x, y, z]"), Point, apex)?;
+        keys.visit(key("apex", "the tip").required("apex = [x, y, z]"), Point, apex);
         let help = "the center of the base, not the apex";
-        keys.visit(key("base", help).required("base = [x, y, z]"), Point, base)?;
+        keys.visit(key("base", help).required("base = [x, y, z]"), Point, base);
         let help = "radius of the base, not more than 16384 times the height, nor less than it \
                     divided by that";
-        keys.visit(key("radius", help).required(RADIUS), Number(Positive), radius)?;
-        self::material(keys, material, SOLID)?;
-        self::color(keys, color)
+        keys.visit(key("radius", help).required(RADIUS), Positive, radius);
+        self::material(keys, material, SOLID);
+        self::color(keys, color);
     }
 }
 
@@ -666,7 +627,7 @@ impl Section for GenerateKeys {
     const EMPTY: fn() -> Self =
         || Self { generator: Generator::Grid(Grid::default()), seed: 0, material: None };
 
-    fn visit<V: Visitor>(&mut self, keys: &mut V) -> Result<(), V::Error> {
+    fn visit<V: Visitor>(&mut self, keys: &mut V) {
         let kinds = [
             ("grid", Generator::Grid(Grid::default())),
             ("field", Generator::Field(Field::default())),
@@ -676,56 +637,56 @@ impl Section for GenerateKeys {
             ("weekend", Generator::Weekend(Weekend)),
         ];
         let Self { generator, seed, material } = self;
-        keys.choose(key("kind", "see below").required(""), &kinds, generator)?;
+        keys.choose(key("kind", "see below").required(""), &kinds, generator);
         if !matches!(generator, Generator::Grid(_) | Generator::Sphereflake(_)) {
-            keys.visit(key("seed", "random seed"), Whole(0, u64::MAX), seed)?;
+            keys.visit(key("seed", "random seed"), Whole(0, u64::MAX), seed);
         }
         let (sides, radius_help) = ("number of spheres along each side", "radius of all spheres");
         let radii_help = "least and greatest radius";
-        let (whole, positive) = (Whole(1, u64::MAX), Number(Positive));
+        let (whole, positive) = (Whole(1, u64::MAX), Positive);
         let colors_help = "give each sphere a random color";
         match generator {
             Generator::Grid(Grid { count, spacing, radius }) => {
-                keys.visit(key("count", sides), whole, count)?;
-                keys.visit(key("spacing", "distance of neighboring centers"), positive, spacing)?;
-                keys.visit(key("radius", radius_help), positive, radius)?;
+                keys.visit(key("count", sides), whole, count);
+                keys.visit(key("spacing", "distance of neighboring centers"), positive, spacing);
+                keys.visit(key("radius", radius_help), positive, radius);
             }
             Generator::Field(Field { count, radius, colors, mix }) => {
-                keys.visit(key("count", sides), whole, count)?;
+                keys.visit(key("count", sides), whole, count);
                 let help = "least and greatest radius, at most 0.5";
-                keys.visit(key("radius", help), List::<2, _>(positive), radius)?;
-                keys.visit(key("colors", colors_help), Flag, colors)?;
+                keys.visit(key("radius", help), List(positive), radius);
+                keys.visit(key("colors", colors_help), Flag, colors);
                 let help = "fractions of diffuse, metal and glass spheres, not all 0";
-                let kind = Optional(List::<3, _>(Number(NotNegative)));
-                keys.visit(key("mix", help).or("one material"), kind, mix)?;
+                let kind = Optional(List(NotNegative));
+                keys.visit(key("mix", help).or("one material"), kind, mix);
             }
             Generator::Volume(Volume { count, size, radius, colors }) => {
-                keys.visit(key("count", "total number of spheres"), whole, count)?;
+                keys.visit(key("count", "total number of spheres"), whole, count);
                 let default = "the cube root of `count`";
-                keys.visit(key("size", "edge of the cube").or(default), Optional(positive), size)?;
-                let kind = Optional(List::<2, _>(positive));
+                keys.visit(key("size", "edge of the cube").or(default), Optional(positive), size);
+                let kind = Optional(List(positive));
                 let default = "0.2 to 0.4 of the mean spacing";
-                keys.visit(key("radius", radii_help).or(default), kind, radius)?;
-                keys.visit(key("colors", colors_help), Flag, colors)?;
+                keys.visit(key("radius", radii_help).or(default), kind, radius);
+                keys.visit(key("colors", colors_help), Flag, colors);
             }
             Generator::Lattice(Lattice { count, radius, jitter }) => {
-                keys.visit(key("count", "number of cells along each edge"), whole, count)?;
-                keys.visit(key("radius", radius_help), positive, radius)?;
+                keys.visit(key("count", "number of cells along each edge"), whole, count);
+                keys.visit(key("radius", radius_help), positive, radius);
                 let help = "standard deviation of thermal displacements along each axis, relative to \
                             the distance of neighbors";
-                keys.visit(key("jitter", help), Number(NotNegative), jitter)?;
+                keys.visit(key("jitter", help), NotNegative, jitter);
             }
             Generator::Sphereflake(Sphereflake { level, radius }) => {
                 let mut own = u64::from(*level);
                 let help = "number of generations below the first sphere, at most 10; level L has \
                             (9^(L + 1) - 1) / 8 spheres";
-                keys.visit(key("level", help), Whole(0, u32::MAX as u64), &mut own)?;
+                keys.visit(key("level", help), Whole(0, u32::MAX as u64), &mut own);
                 *level = own as u32;
-                keys.visit(key("radius", "radius of the first sphere"), positive, radius)?;
+                keys.visit(key("radius", "radius of the first sphere"), positive, radius);
             }
-            Generator::Weekend(Weekend) => return Ok(()),
+            Generator::Weekend(Weekend) => return,
         }
-        self::material(keys, material, "material of all spheres; not with `mix`")
+        self::material(keys, material, "material of all spheres; not with `mix`");
     }
 }
 
@@ -747,23 +708,23 @@ impl Section for FileKeys {
         Self { path, format: None, topology: None, material, radius: None, scale: 1.0 }
     };
 
-    fn visit<V: Visitor>(&mut self, keys: &mut V) -> Result<(), V::Error> {
+    fn visit<V: Visitor>(&mut self, keys: &mut V) {
         let Self { path, format, topology, material, radius, scale } = self;
         keys.visit(
             key("path", "path of the file").required("path = \"particles.csv\""),
             Path,
             path,
-        )?;
+        );
         let formats = Optional(Word(&Format::ALL));
-        keys.visit(key("format", "see below").or("detected from the content"), formats, format)?;
+        keys.visit(key("format", "see below").or("detected from the content"), formats, format);
         let help = "file that names the particles of a trajectory";
-        keys.visit(key("topology", help), Optional(Path), topology)?;
-        self::material(keys, material, "material of spheres without one in the file")?;
+        keys.visit(key("topology", help), Optional(Path), topology);
+        self::material(keys, material, "material of spheres without one in the file");
         let help = "radius of spheres without one in the file, in the scene's unit; overrides the \
                     elements' radii";
         let default = "the element's, or half of the mean spacing, with a warning";
-        keys.visit(key("radius", help).or(default), Optional(Number(Positive)), radius)?;
+        keys.visit(key("radius", help).or(default), Optional(Positive), radius);
         let help = "factor for the file's positions and radii";
-        keys.visit(key("scale", help), Number(Positive), scale)
+        keys.visit(key("scale", help), Positive, scale);
     }
 }
