@@ -52,7 +52,12 @@ impl Cones {
 
     /// Returns the ratio of the larger of the height and the radius of cone `row` to the smaller one.
     pub fn ratio(&self, row: usize) -> f64 {
-        let (height, radius) = (self.apex[row].distance(self.base[row]), self.radius[row]);
+        Self::ratio_of(self.apex[row], self.base[row], self.radius[row])
+    }
+
+    /// Returns the same ratio of a cone that is not in the columns.
+    pub(super) fn ratio_of(apex: DVec3, base: DVec3, radius: f64) -> f64 {
+        let height = apex.distance(base);
         height.max(radius) / height.min(radius)
     }
 

@@ -50,7 +50,7 @@ fn is_fraction(color: Rgb) -> bool {
     (0..3).all(|channel| (0.0..=1.0).contains(&color[channel]))
 }
 
-/// Checks what fields of a material must be together.
+/// Checks what a translucent material consists of.
 fn material(NamedMaterial { name, material }: &NamedMaterial) -> Result<(), WorldError> {
     let refused = match (material, material.surface()) {
         (Material::Translucent { .. }, Material::Dielectric { .. }) => Some("glass"),
@@ -58,14 +58,9 @@ fn material(NamedMaterial { name, material }: &NamedMaterial) -> Result<(), Worl
         (_, Material::Translucent { .. }) => Some("translucent itself"),
         _ => None,
     };
-    if let Some(kind) = refused {
+    refused.map_or(Ok(()), |kind| {
         let whose = format!("the surface of the translucent material \"{name}\"");
-        return Err(WorldError::Invalid(format!("{whose} must not be {kind}")));
-    }
-    let Material::Reflective { diffuse, mirror, .. } = *material.surface() else { return Ok(()) };
-    require(diffuse + mirror <= 1.0, || {
-        let sum = diffuse + mirror;
-        format!("`diffuse + mirror` of the material \"{name}\" is {sum}, but must be 0 to 1")
+        Err(WorldError::Invalid(format!("{whose} must not be {kind}")))
     })
 }
 
@@ -222,7 +217,8 @@ mod tests {
     use crate::scene::generate::default_scene;
     use crate::scene::particles::Cell;
     use crate::scene::{
-        Background, ConductorFresnel, Environment, Lens, Light, Pose, Projection, Slice, SliceMode,
+        Background, Camera, ConductorFresnel, Environment, Insets, Lens, Light, Pose, Projection,
+        Slice, SliceMode,
     };
     use glam::DVec3;
     use std::sync::Arc;
@@ -276,6 +272,13 @@ mod tests {
         refuse("`focus`", |scene, focus| {
             scene.camera.lens = Some(Lens { aperture: 0.1, focus: Some(focus) });
         });
+        // Also where the camera is placed by hand, and leaves nothing free.
+        for pose in [Camera::default().pose, look_at(DVec3::Z, DVec3::ZERO)] {
+            refuse("`insets`", |scene, top| {
+                scene.camera.pose = pose;
+                scene.camera.insets = Insets { top, ..Insets::default() };
+            });
+        }
         for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
             let with = |value: f64| DVec3::ONE + axis.map(|on| if on > 0.0 { value } else { 0.0 });
             refuse_infinite("`eye`", |scene, value| {
@@ -347,6 +350,10 @@ mod tests {
                 made_of(scene, Material::Reflective { color: Rgb::ONE, diffuse, mirror });
             });
         }
+        let mut scene = default_scene(0);
+        made_of(&mut scene, Material::Reflective { color: Rgb::ONE, diffuse: 0.5, mirror: 0.75 });
+        let error = World::build(&scene).expect_err("more than 1").to_string();
+        assert!(error.contains("`diffuse + mirror` of the material \"own\" is 1.25"), "{error}");
         refuse("sphere 3", |scene, value| scene.spheres.radius[3] = value);
         refuse_infinite("sphere 3", |scene, value| scene.spheres.y[3] = value);
     }

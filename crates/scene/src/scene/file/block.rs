@@ -264,8 +264,18 @@ impl Visitor for Reader<'_, '_> {
         }
     }
 
-    fn refuse(&mut self, name: &'static str, message: &str) {
-        self.read(|block| Err(block.error_at(name, message)));
+    fn forbid(&mut self, names: &[&str], reason: &str, help: &str) {
+        self.read(|block| {
+            names.iter().try_for_each(|name| block.forbid(name, reason, || help.to_owned()))
+        });
+    }
+
+    fn refuse(&mut self, at: &[&'static str], message: &str, help: Option<&str>) {
+        self.read(|block| {
+            let at = at.iter().find(|name| block.has(name)).unwrap_or(&at[0]);
+            let error = block.error_at(at, message);
+            Err(FileError { help: help.map(str::to_owned), ..error })
+        });
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::block::Block;
 use crate::scene::keys::{GroundKeys, Schema, Section};
-use crate::scene::{ConductorFresnel, FileError, Ground, Material, NamedMaterial};
+use crate::scene::{FileError, Ground, Material, NamedMaterial};
 use crate::suggest;
 use std::collections::HashMap;
 
@@ -66,7 +66,7 @@ pub(super) fn read(root: &Block) -> Result<Materials, FileError> {
                 block.error("a material's name is empty, or has leading or trailing blanks");
             return Err(error.with_help("write [material.NAME] with another name"));
         }
-        let material = material(&block)?;
+        let material = block.read()?;
         materials.row_or_add(NamedMaterial { name: name.to_owned(), material });
     }
     Ok(materials)
@@ -93,17 +93,18 @@ pub(super) fn read_ground(
     Ok(Some(ground))
 }
 
-/// Refuses dielectrics and emitters for `body`, which only spheres can be.
-pub(super) fn refuse_lights_and_glass(
+/// Returns the row of the material that the section of `body` names, neither glass nor an emitter,
+/// which only spheres can be.
+pub(super) fn solid_row(
     block: &Block,
-    materials: &Materials,
-    row: u32,
+    materials: &mut Materials,
     body: &str,
-) -> Result<(), FileError> {
-    let kind = match materials.rows()[row as usize].material {
+) -> Result<u32, FileError> {
+    let row = row(block, materials)?;
+    let kind = match materials.rows[row as usize].material {
         Material::Dielectric { .. } => "a dielectric",
         Material::Emitter { .. } => "an emitter",
-        _ => return Ok(()),
+        _ => return Ok(row),
     };
     let error = block.error_at("material", &format!("{body} cannot be {kind}"));
     Err(error.with_help("name a material of another kind, or use spheres"))
@@ -119,24 +120,4 @@ pub(super) fn row(block: &Block, materials: &mut Materials) -> Result<u32, FileE
     materials.position(name).ok_or_else(|| {
         value.error(format!("unknown material \"{name}\"")).with_help(materials.known(name))
     })
-}
-
-fn material(block: &Block) -> Result<Material, FileError> {
-    let material: Material = block.read()?;
-    match *material.surface() {
-        Material::Conductor { fresnel: ConductorFresnel::Exact { .. }, .. } => {
-            for key in ["color", "fresnel"] {
-                let help = || "write either color, or eta and k".to_owned();
-                block.forbid(key, "eta and k", help)?;
-            }
-        }
-        Material::Reflective { diffuse, mirror, .. } if diffuse + mirror > 1.0 => {
-            let at = if block.has("mirror") { "mirror" } else { "diffuse" };
-            let message = format!("the sum of `diffuse` and `mirror` is {}", diffuse + mirror);
-            let error = block.error_at(at, &message);
-            return Err(error.with_help("the sum must be at most 1; the default of each is 0.5"));
-        }
-        _ => (),
-    }
-    Ok(material)
 }

@@ -4,16 +4,12 @@
 //! function per section checks every key, its kind and its range, so that every error is reported with
 //! its line and what to write instead. `scenes/README.md` describes every key.
 
-mod annotations;
 pub(in crate::scene) mod block;
-mod camera;
-mod cones;
-mod ellipsoids;
+mod bodies;
 mod environment;
 mod materials;
 mod render;
 mod spheres;
-mod sticks;
 pub(in crate::scene) mod value;
 
 use self::block::{Block, Source};
@@ -21,8 +17,8 @@ use self::materials::Materials;
 use super::keys::{EnvironmentKeys, SECTIONS, Schema};
 use super::particles::{self, Orientation, Particles, ReadOptions, TypeMaterial};
 use super::{
-    Camera, Environment, EnvironmentMap, FileError, Light, Material, NamedMaterial, Preset, Rgb,
-    Scene, Settings, Spheres,
+    Annotations, Environment, EnvironmentMap, FileError, Light, Material, NamedMaterial, Preset,
+    Rgb, Scene, Settings, Spheres,
 };
 use crate::memory::{self, Shortage, read_at_most};
 use memchr::memchr_iter;
@@ -197,22 +193,26 @@ fn parse_bytes(text: &str) -> u64 {
 fn read(source: &Source, root: &Block) -> Result<Scene, FileError> {
     let title = root.value("title").map_or(Ok(""), |value| value.text())?;
     let settings = root.block("render", Schema::render())?;
-    let camera = root.block("camera", Schema::of::<Camera>())?;
     let mut scene = Scene {
         title: title.to_owned(),
         settings: settings.map_or(Ok(Settings::default()), |block| render::read(&block))?,
-        camera: camera.map_or(Ok(Camera::default()), |block| camera::read(&block))?,
+        camera: root.section("camera")?.unwrap_or_default(),
         look: root.section("look")?.unwrap_or_default(),
-        annotations: annotations::read(root)?,
+        annotations: Annotations {
+            color_bar: root.section("color_bar")?,
+            legend: root.section("legend")?,
+            axes: root.section("axes")?,
+            scale_bar: root.section("scale_bar")?,
+            labels: root.sections("label")?,
+            lettering: root.section("lettering")?.unwrap_or_default(),
+        },
         slices: root.sections("slice")?,
         lights: root.sections("light")?,
         ..Scene::default()
     };
     let mut materials = materials::read(root)?;
     spheres::read(source, root, &mut scene, &mut materials)?;
-    sticks::read(root, &mut scene.sticks, &mut materials)?;
-    ellipsoids::read(root, &mut scene.ellipsoids, &mut materials)?;
-    cones::read(root, &mut scene.cones, &mut materials)?;
+    bodies::read(root, &mut scene, &mut materials)?;
     scene.ground = materials::read_ground(root, &mut materials)?;
     scene.materials = materials.into_rows();
     let environment = root.block("environment", Schema::of::<EnvironmentKeys>())?;

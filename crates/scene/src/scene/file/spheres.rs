@@ -4,7 +4,6 @@ use super::block::{Block, Source};
 use super::materials::{self, Materials};
 use crate::memory;
 use crate::scene::Footprint;
-use crate::scene::generate::{Field, Generator};
 use crate::scene::keys::{FileKeys, GenerateKeys, Schema, SphereKeys};
 use crate::scene::particles::{self, Radii, ReadOptions};
 use crate::scene::{FileError, Scene, Spheres};
@@ -45,12 +44,6 @@ fn read_generate(
     materials: &mut Materials,
 ) -> Result<(), FileError> {
     let GenerateKeys { generator, seed, .. } = block.read()?;
-    if let Generator::Field(Field { mix: Some(_), .. }) = generator {
-        block.forbid("material", "mix", || {
-            "a mix uses the materials diffuse, metal and glass, which the scene may define"
-                .to_owned()
-        })?;
-    }
     let own = block.has("material").then(|| materials::row(block, materials));
     let row = match &own {
         Some(Ok(row)) => *row,

@@ -194,11 +194,15 @@ fn contradicting_keys_are_reported() {
         ("[camera]\neye = [0, 0, 0]\ntarget = [1, 0, 0]\nmargin = 0.1\n", 4),
         ("[camera]\neye = [0, 0, 0]\n", 1),
         ("[camera]\nfit = false\n", 1),
+        ("[camera]\nfit = false\nmargin = 0.1\n", 3),
+        ("[camera]\nfit = true\ntarget = [0, 0, 0]\n", 3),
+        ("[camera]\neye = [1, 0, 0]\ntarget = [1, 0, 0]\n", 3),
         ("[camera]\nfocus = 3\n", 2),
         ("[camera]\nprojection = \"orthographic\"\nfov = 3\n", 3),
         ("[material.a]\nkind = \"conductor\"\n", 1),
         ("[material.a]\nkind = \"conductor\"\neta = 1\n", 1),
         ("[material.a]\nkind = \"conductor\"\neta = 1\nk = 1\ncolor = 1\n", 5),
+        ("[material.a]\nkind = \"reflective\"\ndiffuse = 0.6\n", 3),
         ("[material.a]\nkind = \"emitter\"\n", 1),
         ("[material.a]\ncolor = 1\n", 1),
         ("[material.\" a\"]\nkind = \"lambertian\"\n", 1),
@@ -211,6 +215,13 @@ fn contradicting_keys_are_reported() {
         ("[environment]\nkind = \"picture\"\nfile = \"none.hdr\"\n", 3),
         ("[[generate]]\nkind = \"field\"\nmix = [1, 0, 0]\nmaterial = \"a\"\n", 4),
         ("[[generate]]\nkind = \"grid\"\nseed = 1\n", 3),
+        (
+            "[[stick]]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nradius = 1\ncolor = 1\ncolors = [1, 1]\n",
+            5,
+        ),
+        ("[[ellipsoid]]\ncenter = [0, 0, 0]\nsemi_axes = [1, 1, 20000]\n", 3),
+        ("[[cone]]\napex = [0, 0, 0]\nbase = [0, 0, 0]\nradius = 1\n", 3),
+        ("[[cone]]\napex = [0, 0, 0]\nbase = [0, 0, 1]\nradius = 20000\n", 4),
     ];
     for (text, line) in cases {
         let error = fault(text);

@@ -11,7 +11,7 @@ mod table;
 pub(in crate::scene) use kinds::Kind;
 pub(in crate::scene) use schema::Schema;
 pub(in crate::scene) use table::{
-    ConeKeys, EYE, EllipsoidKeys, EnvironmentKeys, FileKeys, GenerateKeys, GroundKeys, SECTIONS,
+    ConeKeys, EllipsoidKeys, EnvironmentKeys, FileKeys, GenerateKeys, GroundKeys, SECTIONS,
     SphereKeys, StickKeys,
 };
 
@@ -72,8 +72,14 @@ pub(in crate::scene) trait Visitor: Sized {
     /// Visits a value whose form decides on keys, too: a form is chosen by any of its keys.
     fn form<T: Clone>(&mut self, _forms: &[(&[&str], T)], _value: &mut T) {}
 
-    /// Refuses a value that contradicts another.
-    fn refuse(&mut self, _name: &'static str, _message: &str) {}
+    /// Refuses keys of a scene file that are meaningless together with `reason`.
+    fn forbid(&mut self, _names: &[&str], _reason: &str, _help: &str) {}
+
+    /// Refuses values of a scene file that contradict each other, at the first of the keys that it has.
+    fn refuse(&mut self, _at: &[&'static str], _message: &str, _help: Option<&str>) {}
+
+    /// Checks a value that comes from code and is no key's.
+    fn check<T: Debug>(&mut self, _name: &str, _kind: impl Kind<T>, _value: &T) {}
 }
 
 /// Writes a section's keys.
@@ -100,9 +106,12 @@ struct Checker<F> {
 
 impl<F: Fn(&str) -> String> Visitor for Checker<F> {
     fn visit<T: Debug>(&mut self, key: Key, kind: impl Kind<T>, value: &mut T) {
+        self.check(key.name, kind, value);
+    }
+
+    fn check<T: Debug>(&mut self, name: &str, kind: impl Kind<T>, value: &T) {
         if self.result.is_ok() && !kind.contains(value) {
-            let (whose, value, range) =
-                ((self.whose)(key.name), kind.brief(value), kind.words().range);
+            let (whose, value, range) = ((self.whose)(name), kind.brief(value), kind.words().range);
             self.result = Err(format!("{whose} is {value}, but must be {range}"));
         }
     }

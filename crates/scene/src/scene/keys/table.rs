@@ -10,9 +10,9 @@ use crate::image::Image;
 use crate::scene::generate::{Field, Generator, Grid, Lattice, Sphereflake, Volume, Weekend};
 use crate::scene::particles::{Cell, Format};
 use crate::scene::{
-    Anchor, AxisTripod, BRIGHTEST, Camera, ColorBar, ColorLegend, ConductorFresnel, Environment,
-    EnvironmentMap, Ground, Insets, Label, Lens, Lettering, Light, Look, Material, Pose,
-    Projection, Rgb, ScaleBar, Slice, SliceMode,
+    Anchor, AxisTripod, BRIGHTEST, Camera, ColorBar, ColorLegend, ConductorFresnel, Cones,
+    Ellipsoids, Environment, EnvironmentMap, Ground, Insets, Label, Lens, Lettering, Light, Look,
+    Material, Pose, Projection, Rgb, ScaleBar, Slice, SliceMode,
 };
 use crate::settings::Limits::{
     self, AboveTo, Any, Below, Between, NotNegative, Positive, Share, Within,
@@ -59,9 +59,6 @@ const GLASS: f64 = 1.5;
 /// Degrees: the sun's radius seen from the earth.
 const SUN: f64 = 0.27;
 
-/// What to write without the keys of a camera's position.
-pub(in crate::scene) const EYE: &str = "eye = [x, y, z] and target = [x, y, z], or fit = true";
-
 impl Section for Camera {
     const NAME: &'static str = "[camera]";
     const EMPTY: fn() -> Self = Self::default;
@@ -82,21 +79,37 @@ impl Section for Camera {
                 keys.visit(key("height", help).or(default), Optional(Positive), height);
             }
         }
-        let origin = Pose::LookAt { eye: DVec3::ZERO, target: DVec3::ZERO };
-        keys.form(&[(&["eye", "target"], origin), (&[], Self::default().pose)], pose);
+        let looks = Pose::LookAt { eye: DVec3::ZERO, target: DVec3::ZERO };
+        keys.form(&[(&["eye", "target"], looks), (&[], Self::default().pose)], pose);
+        let mut fit = matches!(pose, Pose::Fit { .. }).then_some(true);
+        let help = "place the camera as close as possible with all spheres in the image; replaces \
+                    `eye` and `target`";
+        keys.visit(key("fit", help).or("`true` without those"), Optional(Flag), &mut fit);
+        if fit == Some(true) {
+            let help = "write either fit = true with a direction, or eye and target";
+            keys.forbid(&["eye", "target"], "fit = true", help);
+        } else {
+            let help = "remove it, or write fit = true instead of eye and target";
+            keys.forbid(&["direction", "margin", "insets"], "eye and target", help);
+            if matches!(pose, Pose::Fit { .. }) {
+                *pose = looks;
+            }
+        }
         match pose {
             Pose::LookAt { eye, target } => {
-                let own = key("eye", "position of the camera");
-                let own = own.required(EYE).or("with `target`, or neither");
-                keys.visit(own, Point, eye);
+                let example = "eye = [x, y, z] and target = [x, y, z], or fit = true";
+                let own = key("eye", "position of the camera").required(example);
+                keys.visit(own.or("with `target`, or neither"), Point, eye);
                 let example = "target = [x, y, z]: the point in the middle of the picture";
                 let own = key("target", "point in the center of the image, not that of `eye`");
                 keys.visit(own.required(example).or("with `eye`, or neither"), Point, target);
+                if eye == target {
+                    let help = "write the point that is in the middle of the picture";
+                    let message = "`target` is the same point as `eye`";
+                    keys.refuse(&["target"], message, Some(help));
+                }
             }
             Pose::Fit { direction, margin } => {
-                let help = "place the camera as close as possible with all spheres in the image; \
-                            replaces `eye` and `target`";
-                keys.visit(key("fit", help).or("`true` without those"), Flag, &mut true);
                 let help = "with `fit`: the view direction, from the camera into the scene";
                 keys.visit(key("direction", help), Vector, direction);
                 let help = "with `fit`: fraction of the image left empty at its edges";
@@ -113,6 +126,10 @@ impl Section for Camera {
         let help = "with `aperture`: focus distance along the view axis";
         let default = "the distance of `target`, or of the center of the spheres";
         keys.visit(key("focus", help).or(default), Optional(Positive), &mut focus);
+        if aperture.is_none() {
+            let help = "write aperture = the diameter of the lens, or remove focus";
+            keys.forbid(&["focus"], "a pinhole", help);
+        }
         *lens = aperture.map(|aperture| Lens { aperture, focus });
         let fits = matches!(pose, Pose::Fit { .. }) && *insets != Insets::default();
         let mut own = fits.then(|| insets.to_array());
@@ -123,6 +140,15 @@ impl Section for Camera {
         keys.visit(key("insets", help).or(default), kind, &mut own);
         if let Some([left, right, bottom, top]) = own {
             *insets = Insets { left, right, bottom, top };
+        }
+        keys.check("insets", List(Below(0.0, 1.0)), &insets.to_array());
+        if let Pose::Fit { margin, .. } = pose
+            && *insets != Insets::default()
+            && (insets.left + insets.right).max(insets.bottom + insets.top) + *margin >= 1.0
+        {
+            let message = "`insets` and the margin leave no room for the spheres";
+            let help = "write smaller fractions of the width and the height";
+            keys.refuse(&["insets"], message, Some(help));
         }
     }
 }
@@ -175,7 +201,7 @@ impl Section for ColorBar {
         let spacing = if log { Spacing::Logarithmic } else { Spacing::Linear };
         match Range::new(ends[0], ends[1], spacing) {
             Ok(own) => *range = own,
-            Err(error) => keys.refuse("range", &error.to_string()),
+            Err(error) => keys.refuse(&["range"], &error.to_string(), None),
         }
         keys.visit(key("map", "the color map"), Word(&Map::ALL.map(|map| (map.name(), map))), map);
         keys.visit(key("reversed", "reverse the color map"), Flag, reversed);
@@ -444,6 +470,13 @@ impl Section for Material {
                 keys.visit(key("diffuse", "fraction reflected diffusely"), Share, diffuse);
                 let help = "fraction mirrored; the sum with `diffuse` is at most 1";
                 keys.visit(key("mirror", help), Share, mirror);
+                let sum = *diffuse + *mirror;
+                keys.check("diffuse + mirror", Share, &sum);
+                if sum > 1.0 {
+                    let message = format!("the sum of `diffuse` and `mirror` is {sum}");
+                    let help = "the sum must be at most 1; the default of each is 0.5";
+                    keys.refuse(&["mirror", "diffuse"], &message, Some(help));
+                }
             }
             Self::Emitter { radiance, albedo } => {
                 let example = "radiance = [r, g, b], or a number for white";
@@ -487,6 +520,7 @@ fn conductor<V: Visitor>(keys: &mut V, fresnel: &mut ConductorFresnel, help: &'s
             let example = "k = [r, g, b]: the imaginary part of the index of refraction";
             let own = key("k", "imaginary part of the index of refraction");
             keys.visit(own.required(example).or("with `eta`, or neither"), Positive, k);
+            keys.forbid(&["color", "fresnel"], "eta and k", "write either color, or eta and k");
         }
     }
 }
@@ -551,6 +585,9 @@ impl Section for StickKeys {
         keys.visit(key("color", "factor for the material's color").or("1"), Optional(Share), color);
         let help = "factors for the half at `from` and for that at `to`, in place of `color`";
         keys.visit(key("colors", help), Optional(List(Share)), colors);
+        if colors.is_some() {
+            keys.forbid(&["color"], "colors", "it gives the colors of both halves");
+        }
     }
 }
 
@@ -578,6 +615,14 @@ impl Section for EllipsoidKeys {
         let help = "half of the lengths along x, y and z, before the rotation, none more than 16384 \
                     times another";
         keys.visit(key("semi_axes", help).required(example), List(Positive), semi_axes);
+        let axes = DVec3::from(*semi_axes);
+        let (ratio, most) = (axes.max_element() / axes.min_element(), Ellipsoids::MAX_RATIO);
+        if ratio > most {
+            let message = format!(
+                "the longest semi-axis is {ratio} times the shortest, but at most {most} fit"
+            );
+            keys.refuse(&["semi_axes"], &message, None);
+        }
         keys.visit(key("orientation", "rotation"), Quaternion, orientation);
         self::material(keys, material, SOLID);
         self::color(keys, color);
@@ -606,9 +651,19 @@ impl Section for ConeKeys {
         keys.visit(key("apex", "the tip").required("apex = [x, y, z]"), Point, apex);
         let help = "the center of the base, not the apex";
         keys.visit(key("base", help).required("base = [x, y, z]"), Point, base);
+        if apex == base {
+            keys.refuse(&["base"], "the base is at the apex", Some("move one of them"));
+        }
         let help = "radius of the base, not more than 16384 times the height, nor less than it \
                     divided by that";
         keys.visit(key("radius", help).required(RADIUS), Positive, radius);
+        let (ratio, most) = (Cones::ratio_of(*apex, *base, *radius), Cones::MAX_RATIO);
+        if ratio > most {
+            let message = format!(
+                "of the height and the radius one is {ratio} times the other, but at most {most} fit"
+            );
+            keys.refuse(&["radius"], &message, None);
+        }
         self::material(keys, material, SOLID);
         self::color(keys, color);
     }
@@ -659,6 +714,11 @@ impl Section for GenerateKeys {
                 let help = "fractions of diffuse, metal and glass spheres, not all 0";
                 let kind = Optional(List(NotNegative));
                 keys.visit(key("mix", help).or("one material"), kind, mix);
+                if mix.is_some() {
+                    let help = "a mix uses the materials diffuse, metal and glass, which the scene \
+                                may define";
+                    keys.forbid(&["material"], "mix", help);
+                }
             }
             Generator::Volume(Volume { count, size, radius, colors }) => {
                 keys.visit(key("count", "total number of spheres"), whole, count);
