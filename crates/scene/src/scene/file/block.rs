@@ -69,20 +69,14 @@ impl<'a> Block<'a> {
     }
 
     /// Reads the section, if it exists, that a scene file writes as `[name]`.
-    pub(in crate::scene) fn section<T: Section>(
-        &self,
-        name: &'static str,
-    ) -> Result<Option<T>, FileError> {
-        let block = self.block(name, Schema::of::<T>())?;
+    pub(in crate::scene) fn section<T: Section>(&self) -> Result<Option<T>, FileError> {
+        let block = self.block(Schema::of::<T>())?;
         block.map(|block| block.read()).transpose()
     }
 
     /// Reads all sections that a scene file writes as `[[name]]`.
-    pub(in crate::scene) fn sections<T: Section>(
-        &self,
-        name: &'static str,
-    ) -> Result<Vec<T>, FileError> {
-        self.blocks(name, Schema::of::<T>())?.iter().map(Self::read).collect()
+    pub(in crate::scene) fn sections<T: Section>(&self) -> Result<Vec<T>, FileError> {
+        self.blocks(Schema::of::<T>())?.iter().map(Self::read).collect()
     }
 
     /// Returns the section's kind, after checking that every key has a meaning for it.
@@ -90,7 +84,10 @@ impl<'a> Block<'a> {
         let Schema { selector, kinds, needs_kind, .. } = &*self.schema;
         let kind = match self.value(selector) {
             Some(value) => value.choice(kinds)?,
-            None if *needs_kind => return Err(self.missing_kind()),
+            None if *needs_kind => {
+                let kinds = join(kinds.iter().map(|kind| format!("\"{kind}\"")), ", ");
+                return Err(self.missing(selector, &format!("{selector} = one of {kinds}")));
+            }
             None => kinds[0],
         };
         for entry in &self.schema.keys {
@@ -123,18 +120,6 @@ impl<'a> Block<'a> {
         Some(Value { source: self.source, name, span: item.span(), item: item.get_ref() })
     }
 
-    /// Returns the value of a required key; `help` says what to write.
-    pub(in crate::scene) fn need(
-        &self,
-        name: &'static str,
-        help: &str,
-    ) -> Result<Value<'a>, FileError> {
-        self.value(name).ok_or_else(|| {
-            let message = format!("missing key `{name}` in {}", self.schema.section);
-            self.error(message).with_help(format!("write {help}"))
-        })
-    }
-
     /// Returns an error for the whole section.
     pub(in crate::scene) fn error(&self, message: impl Into<String>) -> FileError {
         self.source.error(self.span.clone(), message)
@@ -150,12 +135,9 @@ impl<'a> Block<'a> {
         self.entry(name).is_some()
     }
 
-    /// Returns the tables under a key that a scene file writes as `[[name]]`.
-    pub(in crate::scene) fn blocks(
-        &self,
-        name: &'static str,
-        schema: Schema,
-    ) -> Result<Vec<Self>, FileError> {
+    /// Returns the tables that a scene file writes as `[[name]]`.
+    pub(in crate::scene) fn blocks(&self, schema: Schema) -> Result<Vec<Self>, FileError> {
+        let name = schema.name();
         let Some(value) = self.value(name) else { return Ok(Vec::new()) };
         let DeValue::Array(items) = value.item else {
             let error = value.error(format!("`{name}` must be a list of tables"));
@@ -168,24 +150,19 @@ impl<'a> Block<'a> {
             .collect()
     }
 
-    /// Returns the table under a key that a scene file writes as `[name]`.
-    pub(in crate::scene) fn block(
-        &self,
-        name: &'static str,
-        schema: Schema,
-    ) -> Result<Option<Self>, FileError> {
-        let Some(value) = self.value(name) else { return Ok(None) };
+    /// Returns the table that a scene file writes as `[name]`.
+    pub(in crate::scene) fn block(&self, schema: Schema) -> Result<Option<Self>, FileError> {
+        let Some(value) = self.value(schema.name()) else { return Ok(None) };
         self.open_item(Rc::new(schema), value.span.clone(), value.item).map(Some)
     }
 
-    /// Returns the tables under a key that a scene file writes as `[name.OWN]`, with their own names,
-    /// in the file's order.
+    /// Returns the tables that a scene file writes as `[name.OWN]`, with their own names, in the file's
+    /// order.
     pub(in crate::scene) fn named_blocks(
         &self,
-        name: &'static str,
         schema: Schema,
     ) -> Result<Vec<(&'a str, Self)>, FileError> {
-        let Some(value) = self.value(name) else { return Ok(Vec::new()) };
+        let Some(value) = self.value(schema.name()) else { return Ok(Vec::new()) };
         let mut entries: Vec<_> = value.table()?.iter().collect();
         entries.sort_by_key(|(key, _)| key.span().start);
         let schema = Rc::new(schema);
@@ -211,11 +188,10 @@ impl<'a> Block<'a> {
         self.table.get_key_value(name)
     }
 
-    fn missing_kind(&self) -> FileError {
-        let Schema { section, selector, kinds, .. } = &*self.schema;
-        let kinds = join(kinds.iter().map(|kind| format!("\"{kind}\"")), ", ");
-        self.error(format!("missing key `{selector}` in {section}"))
-            .with_help(format!("write {selector} = one of {kinds}"))
+    /// Returns the error of a required key that is not there; `example` is what to write.
+    fn missing(&self, name: &str, example: &str) -> FileError {
+        let message = format!("missing key `{name}` in {}", self.schema.section);
+        self.error(message).with_help(format!("write {example}"))
     }
 }
 
@@ -236,12 +212,10 @@ impl Reader<'_, '_> {
 impl Visitor for Reader<'_, '_> {
     fn visit<T: Debug>(&mut self, key: Key, kind: impl Kind<T>, value: &mut T) {
         self.read(|block| {
-            let found = match key.example {
-                Some(example) => Some(block.need(key.name, example)?),
-                None => block.value(key.name),
-            };
-            if let Some(found) = found {
-                *value = kind.read(&found)?;
+            match (block.value(key.name), key.example) {
+                (Some(found), _) => *value = kind.read(&found)?,
+                (None, Some(example)) => return Err(block.missing(key.name, example)),
+                (None, None) => (),
             }
             Ok(())
         });

@@ -10,18 +10,18 @@ pub(super) fn read(
     scene: &mut Scene,
     materials: &mut Materials,
 ) -> Result<(), FileError> {
-    for block in root.blocks("stick", Schema::of::<StickKeys>())? {
+    for block in root.blocks(Schema::of::<StickKeys>())? {
         let StickKeys { ends, radius, color, colors, .. } = block.read()?;
         let material = materials::solid_row(&block, materials, "a stick")?;
         let colors = colors.unwrap_or([color.unwrap_or(Rgb::ONE); 2]);
         scene.sticks.push(ends, radius, material, colors);
     }
-    for block in root.blocks("ellipsoid", Schema::of::<EllipsoidKeys>())? {
+    for block in root.blocks(Schema::of::<EllipsoidKeys>())? {
         let EllipsoidKeys { center, semi_axes, orientation, color, .. } = block.read()?;
         let material = materials::solid_row(&block, materials, "an ellipsoid")?;
         scene.ellipsoids.push(center, semi_axes.into(), orientation, material, color);
     }
-    for block in root.blocks("cone", Schema::of::<ConeKeys>())? {
+    for block in root.blocks(Schema::of::<ConeKeys>())? {
         let ConeKeys { apex, base, radius, color, .. } = block.read()?;
         let material = materials::solid_row(&block, materials, "a cone")?;
         scene.cones.push(apex, base, radius, material, color);

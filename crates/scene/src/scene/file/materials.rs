@@ -59,7 +59,7 @@ impl Materials {
 
 pub(super) fn read(root: &Block) -> Result<Materials, FileError> {
     let mut materials = Materials::default();
-    for (name, block) in root.named_blocks("material", Schema::of::<Material>())? {
+    for (name, block) in root.named_blocks(Schema::of::<Material>())? {
         // CSV cells are trimmed, and an empty cell names no material.
         if name.is_empty() || name.trim() != name {
             let error =
@@ -77,7 +77,7 @@ pub(super) fn read_ground(
     root: &Block,
     materials: &mut Materials,
 ) -> Result<Option<Ground>, FileError> {
-    let Some(block) = root.block("ground", Schema::of::<GroundKeys>())? else { return Ok(None) };
+    let Some(block) = root.block(Schema::of::<GroundKeys>())? else { return Ok(None) };
     let GroundKeys { mut ground, .. } = block.read()?;
     ground.material = row(&block, materials)?;
     let unsupported = match materials.rows[ground.material as usize].material {

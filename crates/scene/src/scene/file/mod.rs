@@ -192,22 +192,22 @@ fn parse_bytes(text: &str) -> u64 {
 /// Reads all sections, each after those that it refers to.
 fn read(source: &Source, root: &Block) -> Result<Scene, FileError> {
     let title = root.value("title").map_or(Ok(""), |value| value.text())?;
-    let settings = root.block("render", Schema::render())?;
+    let settings = root.block(Schema::render())?;
     let mut scene = Scene {
         title: title.to_owned(),
         settings: settings.map_or(Ok(Settings::default()), |block| render::read(&block))?,
-        camera: root.section("camera")?.unwrap_or_default(),
-        look: root.section("look")?.unwrap_or_default(),
+        camera: root.section()?.unwrap_or_default(),
+        look: root.section()?.unwrap_or_default(),
         annotations: Annotations {
-            color_bar: root.section("color_bar")?,
-            legend: root.section("legend")?,
-            axes: root.section("axes")?,
-            scale_bar: root.section("scale_bar")?,
-            labels: root.sections("label")?,
-            lettering: root.section("lettering")?.unwrap_or_default(),
+            color_bar: root.section()?,
+            legend: root.section()?,
+            axes: root.section()?,
+            scale_bar: root.section()?,
+            labels: root.sections()?,
+            lettering: root.section()?.unwrap_or_default(),
         },
-        slices: root.sections("slice")?,
-        lights: root.sections("light")?,
+        slices: root.sections()?,
+        lights: root.sections()?,
         ..Scene::default()
     };
     let mut materials = materials::read(root)?;
@@ -215,7 +215,7 @@ fn read(source: &Source, root: &Block) -> Result<Scene, FileError> {
     bodies::read(root, &mut scene, &mut materials)?;
     scene.ground = materials::read_ground(root, &mut materials)?;
     scene.materials = materials.into_rows();
-    let environment = root.block("environment", Schema::of::<EnvironmentKeys>())?;
+    let environment = root.block(Schema::of::<EnvironmentKeys>())?;
     scene.environment = match environment {
         Some(block) => environment::read(source, &block)?,
         None => default_environment(&scene.lights, &scene.materials, &scene.spheres),

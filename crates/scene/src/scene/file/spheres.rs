@@ -15,26 +15,16 @@ pub(super) fn read(
     scene: &mut Scene,
     materials: &mut Materials,
 ) -> Result<(), FileError> {
-    for block in root.blocks("sphere", Schema::of::<SphereKeys>())? {
-        read_sphere(&block, &mut scene.spheres, materials)?;
+    for block in root.blocks(Schema::of::<SphereKeys>())? {
+        let SphereKeys { center, radius, color, .. } = block.read()?;
+        scene.spheres.push(center, radius, materials::row(&block, materials)?, color);
     }
-    for block in root.blocks("generate", Schema::of::<GenerateKeys>())? {
+    for block in root.blocks(Schema::of::<GenerateKeys>())? {
         read_generate(&block, &mut scene.spheres, materials)?;
     }
-    for block in root.blocks("file", Schema::of::<FileKeys>())? {
+    for block in root.blocks(Schema::of::<FileKeys>())? {
         read_file(source, &block, scene, materials)?;
     }
-    Ok(())
-}
-
-fn read_sphere(
-    block: &Block,
-    spheres: &mut Spheres,
-    materials: &mut Materials,
-) -> Result<(), FileError> {
-    let SphereKeys { center, radius, color, .. } = block.read()?;
-    let material = materials::row(block, materials)?;
-    spheres.push(center, radius, material, color);
     Ok(())
 }
 

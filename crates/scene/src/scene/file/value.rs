@@ -4,7 +4,6 @@ use super::block::Source;
 use crate::scene::{FileError, Rgb};
 use crate::settings::Limits;
 use crate::{color, suggest};
-use glam::{DQuat, DVec3};
 use std::ops::Range;
 use std::str::FromStr;
 use toml::de::{DeTable, DeValue};
@@ -84,45 +83,6 @@ impl<'a> Value<'a> {
         Ok(std::array::from_fn(entry))
     }
 
-    /// Returns `N` numbers, each within limits.
-    pub(in crate::scene) fn numbers<const N: usize>(
-        &self,
-        limits: Limits,
-    ) -> Result<[f64; N], FileError> {
-        let mut numbers = [0.0; N];
-        for (number, value) in numbers.iter_mut().zip(self.list::<N>()?) {
-            *number = value.number(limits)?;
-        }
-        Ok(numbers)
-    }
-
-    /// Returns a point, or a vector of any length.
-    pub(in crate::scene) fn point(&self) -> Result<DVec3, FileError> {
-        self.numbers(Limits::Any).map(DVec3::from_array)
-    }
-
-    /// Returns a nonzero vector, as written.
-    pub(in crate::scene) fn vector(&self) -> Result<DVec3, FileError> {
-        let vector = self.point()?;
-        if vector == DVec3::ZERO { Err(self.must_be("a nonzero vector")) } else { Ok(vector) }
-    }
-
-    /// Returns a direction: a nonzero vector, normalized.
-    pub(in crate::scene) fn direction(&self) -> Result<DVec3, FileError> {
-        self.vector().map(unit)
-    }
-
-    /// Returns a quaternion of any length but 0, its real part first, normalized.
-    pub(in crate::scene) fn quaternion(&self) -> Result<DQuat, FileError> {
-        let [w, x, y, z] = self.numbers(Limits::Any)?;
-        // Scaled first: squares of large and of small numbers have no length.
-        let largest = [w, x, y, z].into_iter().map(f64::abs).fold(0.0, f64::max);
-        if largest == 0.0 {
-            return Err(self.must_be("a quaternion [w, x, y, z] that is not 0"));
-        }
-        Ok(DQuat::from_xyzw(x / largest, y / largest, z / largest, w / largest).normalize())
-    }
-
     /// Returns a color: three linear values, one for gray, or `"#rrggbb"` or a CSS name in sRGB; each
     /// value within limits.
     pub(in crate::scene) fn color(&self, limits: Limits) -> Result<Rgb, FileError> {
@@ -179,32 +139,6 @@ impl<'a> Value<'a> {
             DeValue::Float(float) => float.as_str().parse().ok(),
             DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().parse().ok(),
             _ => None,
-        }
-    }
-}
-
-/// Normalizes a vector that is finite and not zero. One of length 1 up to rounding stays as it is, so
-/// that writing and reading a scene changes nothing.
-fn unit(vector: DVec3) -> DVec3 {
-    if (vector.length_squared() - 1.0).abs() <= 4.0 * f64::EPSILON {
-        return vector;
-    }
-    // Squares of components could overflow or vanish.
-    (vector / vector.abs().max_element()).normalize()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn unit_vectors_are_fixed_points_at_any_scale() {
-        for vector in
-            [DVec3::new(1e-300, 2e-300, 0.0), DVec3::new(-1e300, 3e299, 1e300), DVec3::ONE]
-        {
-            let once = unit(vector);
-            assert!((once.length() - 1.0).abs() < 1e-15, "{vector}");
-            assert_eq!(unit(once), once);
         }
     }
 }

@@ -176,10 +176,11 @@ pub(super) enum Triple {
 
 impl Kind<DVec3> for Triple {
     fn read(&self, value: &Value) -> Result<DVec3, FileError> {
-        match self {
-            Self::Point => value.point(),
-            Self::Vector => value.vector(),
-            Self::Direction => value.direction(),
+        let vector: [f64; 3] = List(Limits::Any).read(value)?;
+        match (self, DVec3::from_array(vector)) {
+            (Self::Vector | Self::Direction, DVec3::ZERO) => Err(value.must_be("a nonzero vector")),
+            (Self::Direction, vector) => Ok(unit(vector)),
+            (_, vector) => Ok(vector),
         }
     }
 
@@ -205,12 +206,28 @@ impl Kind<DVec3> for Triple {
     }
 }
 
+/// Normalizes a vector that is finite and not zero. One of length 1 up to rounding stays as it is, so
+/// that writing and reading a scene changes nothing.
+fn unit(vector: DVec3) -> DVec3 {
+    if (vector.length_squared() - 1.0).abs() <= 4.0 * f64::EPSILON {
+        return vector;
+    }
+    // Squares of components could overflow or vanish.
+    (vector / vector.abs().max_element()).normalize()
+}
+
 /// A quaternion of any length but 0, its real part first.
 pub(super) struct Quaternion;
 
 impl Kind<DQuat> for Quaternion {
     fn read(&self, value: &Value) -> Result<DQuat, FileError> {
-        value.quaternion()
+        let [w, x, y, z] = List(Limits::Any).read(value)?;
+        // Scaled first: squares of large and of small numbers have no length.
+        let largest = [w, x, y, z].into_iter().map(f64::abs).fold(0.0, f64::max);
+        if largest == 0.0 {
+            return Err(value.must_be("a quaternion [w, x, y, z] that is not 0"));
+        }
+        Ok(DQuat::from_xyzw(x / largest, y / largest, z / largest, w / largest).normalize())
     }
 
     fn text(&self, DQuat { x, y, z, w }: &DQuat) -> Option<String> {
@@ -366,5 +383,21 @@ impl Kind<Background> for Backdrop {
         let words = Kind::<Rgb>::words(&self.0);
         let values = format!("`\"sky\"`, `\"transparent\"`, or {}", words.values);
         Words { values, ..words }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_vectors_are_fixed_points_at_any_scale() {
+        for vector in
+            [DVec3::new(1e-300, 2e-300, 0.0), DVec3::new(-1e300, 3e299, 1e300), DVec3::ONE]
+        {
+            let once = unit(vector);
+            assert!((once.length() - 1.0).abs() < 1e-15, "{vector}");
+            assert_eq!(unit(once), once);
+        }
     }
 }

@@ -80,6 +80,12 @@ impl Schema {
         Self { section: "[render]", selector: "integrator", kinds, needs_kind: false, keys }
     }
 
+    /// The section's name as a key of the scene.
+    pub(in crate::scene) fn name(&self) -> &'static str {
+        let name = self.section.trim_matches(['[', ']']);
+        name.split_once('.').map_or(name, |(name, _)| name)
+    }
+
     /// Every key of the section.
     pub(in crate::scene) fn names(&self) -> impl Iterator<Item = &'static str> + Clone {
         self.keys.iter().map(|entry| entry.name)
@@ -134,6 +140,13 @@ impl Lister {
         index
     }
 
+    /// Adds a key to this run; `usual` is its default, unless it has another or is required.
+    fn add(&mut self, key: Key, Words { values, python, .. }: Words, usual: String) {
+        let usual = key.example.is_none().then_some(usual);
+        let default = key.default.map(str::to_owned).or(usual);
+        self.keys.push((key.name, Description { help: key.help, values, default, python }));
+    }
+
     /// Adds the keys of this run to the schema, new ones before the next that is known.
     fn merged(self) -> Schema {
         let Self { mut schema, keys, kind, .. } = self;
@@ -156,15 +169,12 @@ impl Lister {
 
 impl Visitor for Lister {
     fn visit<T: Debug>(&mut self, key: Key, kind: impl Kind<T>, value: &mut T) {
-        let usual = || match kind.brief(value).as_str() {
+        let usual = match kind.brief(value).as_str() {
             "\"\"" => "empty".to_owned(),
             "none" => "none".to_owned(),
             value => format!("`{value}`"),
         };
-        let default = key.default.map_or_else(usual, str::to_owned);
-        let default = (key.example.is_none() || key.default.is_some()).then_some(default);
-        let Words { values, python, .. } = kind.words();
-        self.keys.push((key.name, Description { help: key.help, values, default, python }));
+        self.add(key, kind.words(), usual);
     }
 
     fn choose<T: Clone>(&mut self, key: Key, kinds: &[(&'static str, T)], value: &mut T) {
@@ -172,9 +182,7 @@ impl Visitor for Lister {
         let index = self.pick(kinds.len());
         self.kind = names[index];
         *value = kinds[index].1.clone();
-        let Words { values, python, .. } = kinds::one_of(names.iter().copied());
-        let default = key.example.is_none().then(|| format!("`\"{}\"`", names[0]));
-        self.keys.push((key.name, Description { help: key.help, values, default, python }));
+        self.add(key, kinds::one_of(names.iter().copied()), format!("`\"{}\"`", names[0]));
         let schema = &mut self.schema;
         (schema.selector, schema.kinds) = (key.name, names);
         schema.needs_kind = key.example.is_some();

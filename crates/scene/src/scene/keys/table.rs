@@ -260,11 +260,8 @@ impl Section for Label {
 
     fn visit<V: Visitor>(&mut self, keys: &mut V) {
         let Self { text, position } = self;
-        keys.visit(
-            key("text", "text, of one or more lines").required("text = \"the label\""),
-            Text,
-            text,
-        );
+        let own = key("text", "text, of one or more lines").required("text = \"the label\"");
+        keys.visit(own, Text, text);
         self::position(keys, position, "position");
     }
 }
@@ -410,20 +407,14 @@ impl Section for Light {
                 keys.visit(key("angular_radius", help), Below(0.0, 90.0), angular_radius);
             }
             Self::Point { position, intensity, falloff } => {
-                keys.visit(
-                    key("position", "position").required("position = [x, y, z]"),
-                    Point,
-                    position,
-                );
+                let own = key("position", "position").required("position = [x, y, z]");
+                keys.visit(own, Point, position);
                 let example = "intensity = [r, g, b], or a number for white";
                 let help = "radiant intensity; without falloff, the irradiance at any distance";
                 keys.visit(key("intensity", help).required(example), NotNegative, intensity);
                 let help = "inverse-square falloff, or none as in NFF files";
-                keys.visit(
-                    key("falloff", help),
-                    Word(&[("square", true), ("none", false)]),
-                    falloff,
-                );
+                let words = [("square", true), ("none", false)];
+                keys.visit(key("falloff", help), Word(&words), falloff);
             }
         }
     }
@@ -770,11 +761,8 @@ impl Section for FileKeys {
 
     fn visit<V: Visitor>(&mut self, keys: &mut V) {
         let Self { path, format, topology, material, radius, scale } = self;
-        keys.visit(
-            key("path", "path of the file").required("path = \"particles.csv\""),
-            Path,
-            path,
-        );
+        let own = key("path", "path of the file").required("path = \"particles.csv\"");
+        keys.visit(own, Path, path);
         let formats = Optional(Word(&Format::ALL));
         keys.visit(key("format", "see below").or("detected from the content"), formats, format);
         let help = "file that names the particles of a trajectory";
