@@ -1,8 +1,9 @@
 //! Scene files: TOML, validated completely.
 //!
-//! Reading has two steps. `toml` parses tables that know the position of each key and value; then one
-//! function per section checks every key, its kind and its range, so that every error is reported with
-//! its line and what to write instead. `scenes/README.md` describes every key.
+//! Reading has two steps. `toml` parses tables that know the position of each key and value; then each
+//! section's keys are read as `scene/keys` describes them, so that every error is reported with its line
+//! and what to write instead. What refers to other sections or to files is checked here.
+//! `scenes/README.md` describes every key.
 
 pub(in crate::scene) mod block;
 mod bodies;
