@@ -261,7 +261,7 @@ struct Nearest {
     body: Known,
 }
 
-/// What is at a distance.
+/// The body that is known to be at a distance along a ray, if any.
 #[derive(Clone, Copy)]
 enum Known {
     Nothing,

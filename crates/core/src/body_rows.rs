@@ -40,7 +40,7 @@ pub struct BodyRow {
     pub kind: BodyKind,
     /// The row.
     pub row: usize,
-    /// Which of the hits of the body: of a capsule, the half of its axis, 0 about the first end, 1 about the second; else 0.
+    /// Number of the hit among those of the body: of a capsule, the half of its axis, 0 about the first end, 1 about the second; else 0.
     pub half: usize,
 }
 

@@ -43,7 +43,7 @@ pub(in crate::cli) struct Place {
 #[derive(Clone)]
 pub(in crate::cli) struct Job<'a> {
     pub(in crate::cli) source: Source,
-    /// What is asked of the scene.
+    /// The request for the scene.
     pub(in crate::cli) request: Request,
     /// The options on the command line.
     pub(in crate::cli) typed: (&'a ParticleArgs, &'a AppearanceArgs),

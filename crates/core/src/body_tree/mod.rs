@@ -86,7 +86,7 @@ pub trait Shape: Copy + Debug + PartialEq {
         None
     }
 
-    /// Which of the hits of a body one at a distance of a ray is, of a kind with more than one ([`BodyKind::hits`]).
+    /// Returns the number, among those of a body, of its hit at a distance of a ray, of a kind with more than one ([`BodyKind::hits`]).
     fn half_at(&self, _: &ExactRay, _: f64) -> usize {
         0
     }

@@ -52,7 +52,7 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// Where the line enters or leaves the capsule; `None` if it misses it.
+    /// Returns the distance at which the line enters or leaves the capsule; `None` if it misses it.
     fn crossing(&self, side: Side) -> Option<(Quotient, Part)> {
         let (from, d, v) = (&self.from_start, &self.direction, &self.axis);
         let length2 = dot(v, v);

@@ -19,7 +19,7 @@ pub struct CameraRequest {
     pub projection: Option<Projection>,
     /// Margin around the scene as a fraction of the image, 0 to 0.9.
     pub margin: Option<f64>,
-    /// Whether the image is one of a turntable.
+    /// True if the image is one of a turntable.
     pub turns: bool,
 }
 
@@ -28,7 +28,7 @@ pub struct CameraRequest {
 pub struct LensRequest {
     /// Diameter of the lens, at least 0.
     pub aperture: Option<f64>,
-    /// What is in focus.
+    /// The point or particle in focus.
     pub focus: Option<Focus>,
 }
 

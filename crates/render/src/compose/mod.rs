@@ -44,7 +44,7 @@ pub const ROWS: &str = "\0rows";
 /// All that is asked of a scene.
 #[derive(Clone, Debug, Default)]
 pub struct Request {
-    /// How particles become bodies: selection, colors, radii, bonds, arrows.
+    /// The style of particles, by which they become bodies: selection, colors, radii, bonds, arrows.
     pub style: ParticleStyle,
     /// The cell of particles.
     pub cell: CellRequest,
@@ -58,7 +58,7 @@ pub struct Request {
     pub background: Option<Background>,
     /// Planes that cut, after those of the scene.
     pub planes: Vec<SlicePlane>,
-    /// What the planes do.
+    /// The treatment of bodies by the planes.
     pub slice_mode: SliceMode,
     /// Annotations inside the image.
     pub annotations: AnnotationRequest,
@@ -70,24 +70,24 @@ pub struct Request {
     pub lens: LensRequest,
     /// Sections of a scene file beside particles.
     pub sections: Option<Sections>,
-    /// Whether [`Staged::labels`] are kept.
+    /// True to keep [`Staged::labels`].
     pub keeps_labels: bool,
-    /// Whether [`Staged::rows`] follow spheres that slices drop.
+    /// True if [`Staged::rows`] follow spheres that slices drop.
     pub keeps_rows: bool,
 }
 
-/// What is done to the cell of particles.
+/// Changes of the cell of particles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CellRequest {
-    /// Whether particles are wrapped into it.
+    /// True to wrap particles into it.
     pub wrap: bool,
     /// Copies along its edges.
     pub copies: Option<[u32; 3]>,
-    /// Whether its edges are drawn.
+    /// True to draw its edges.
     pub show: bool,
 }
 
-/// What is composed.
+/// The file, title and frame of a composed scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Subject<'a> {
     /// Its file, for messages.
@@ -107,7 +107,7 @@ pub enum Content {
     Scene(Box<Scene>),
 }
 
-/// What all images of a sequence share.
+/// Properties that all images of a sequence share.
 #[derive(Clone, Debug)]
 pub struct Shared {
     /// The camera.
@@ -222,7 +222,7 @@ impl Request {
 /// Composes a scene whose camera is not placed.
 ///
 /// # Errors
-/// What is asked for does not suit the content.
+/// A request that does not suit the content.
 pub fn stage(
     request: &Request,
     subject: &Subject,

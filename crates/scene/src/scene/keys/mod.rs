@@ -60,7 +60,7 @@ impl Key {
     }
 }
 
-/// What reads, writes, checks or lists keys. The first error counts.
+/// A reader, writer, checker or lister of keys. The first error counts.
 pub(in crate::scene) trait Visitor: Sized {
     /// Visits a key and its value.
     fn visit<T: Debug>(&mut self, key: Key, kind: impl Kind<T>, value: &mut T);

@@ -14,7 +14,7 @@ pub(in crate::scene) struct Schema {
     pub(in crate::scene) selector: &'static str,
     /// The values of the selector.
     pub(in crate::scene) kinds: Vec<&'static str>,
-    /// Whether the section must have a selector; without one it is of the first kind.
+    /// True if the section must have a selector; without one it is of the first kind.
     pub(in crate::scene) needs_kind: bool,
     /// Every key, in the order of the manual.
     pub(in crate::scene) keys: Vec<Entry>,

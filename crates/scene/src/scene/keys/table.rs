@@ -516,7 +516,7 @@ fn conductor<V: Visitor>(keys: &mut V, fresnel: &mut ConductorFresnel, help: &'s
     }
 }
 
-/// What the keys of bodies that name a material say.
+/// Values of the keys of bodies that name a material.
 const SOLID: &str = "material, not glass and not an emitter";
 
 /// Visits the key of a body's color.
@@ -533,7 +533,7 @@ pub(in crate::scene) struct SphereKeys {
     pub(in crate::scene) color: Rgb,
 }
 
-/// What to write for a radius.
+/// The advice for a missing radius.
 const RADIUS: &str = "radius = a number greater than 0";
 
 impl Section for SphereKeys {
