@@ -95,12 +95,12 @@ pub mod color {
 pub mod scene {
     #[doc(inline)]
     pub use spherule_render::scene::{
-        Anchor, Annotations, Axis, AxisTripod, Background, Camera, ColorBar, ColorLegend,
-        ConductorFresnel, Cones, Denoise, Ellipsoids, Environment, EnvironmentMap, FileError,
-        Filter, Footprint, Ground, Header, Identity, Insets, Integrator, InvalidSetting, Label,
-        Lens, Lettering, Light, LightChoice, Look, Material, NamedMaterial, Place, Pose, Preset,
-        Projection, Rgb, Roulette, SamplerKind, ScaleBar, Scene, Settings, Slice, SliceMode,
-        SlicePlane, Spheres, Sticks, Tone, text_without_columns, write, write_as,
+        Anchor, Annotations, Axis, AxisTripod, Background, BodyBytes, Camera, ColorBar,
+        ColorLegend, ConductorFresnel, Cones, Denoise, Ellipsoids, Environment, EnvironmentMap,
+        FileError, Filter, Footprint, Ground, Header, Identity, Insets, Integrator, InvalidSetting,
+        Label, Lens, Lettering, Light, LightChoice, Look, Material, NamedMaterial, Place, Pose,
+        Preset, Projection, Rgb, Roulette, SamplerKind, ScaleBar, Scene, Settings, Slice,
+        SliceMode, SlicePlane, Spheres, Sticks, Tone, text_without_columns, write, write_as,
     };
 
     /// Generators of spheres.

@@ -1,8 +1,11 @@
 //! Descriptions of a world's contents and of skipped work.
 
 use indicatif::HumanCount;
+use serde::{Serialize, Serializer};
 use spherule_render::World;
+use spherule_render::body_rows::{BodyKind, BodyRows};
 use spherule_render::shade::MaterialKind;
+use std::fmt::{self, Display, Formatter};
 
 /// Returns a phrase for each kind of content.
 pub(super) fn found(world: &World) -> Vec<String> {
@@ -10,7 +13,7 @@ pub(super) fn found(world: &World) -> Vec<String> {
     let mut found = Vec::new();
     for kind in MaterialKind::ALL {
         if features.bodies_of(kind) > 0 {
-            found.push(format!("{} of {}", bodies(features.counts_of(kind)), kind.name()));
+            found.push(format!("{} of {}", BodyCounts(features.counts_of(kind)), kind.name()));
         }
     }
     if let Some(kind) = features.ground_kind {
@@ -39,12 +42,40 @@ pub(super) fn spheres(count: u64) -> String {
     plural(count, "sphere")
 }
 
-/// `2 spheres`, or `2 spheres, 1 stick, 3 ellipsoids, 4 cones`: those that there are, by their counts in this order.
-pub(super) fn bodies(counts: [u64; 4]) -> String {
-    let all = counts.into_iter().zip(["sphere", "stick", "ellipsoid", "cone"]);
-    let there = all.filter(|(count, _)| *count > 0);
-    let texts: Vec<String> = there.map(|(count, noun)| plural(count, noun)).collect();
-    if texts.is_empty() { spheres(0) } else { texts.join(", ") }
+/// Numbers of bodies, of each kind: in JSON `"spheres": 2, "sticks": 0` and so on.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct BodyCounts(pub(super) [u64; BodyKind::ALL.len()]);
+
+impl BodyCounts {
+    /// Those of a scene or a world.
+    pub(super) fn of(rows: BodyRows) -> Self {
+        Self(rows.0.map(|count| count as u64))
+    }
+
+    /// The kinds and their numbers.
+    fn all(self) -> impl Iterator<Item = (BodyKind, u64)> {
+        BodyKind::ALL.into_iter().zip(self.0)
+    }
+
+    /// The kinds but spheres of which there are bodies, and their numbers.
+    pub(super) fn others(self) -> impl Iterator<Item = (BodyKind, u64)> {
+        self.all().skip(1).filter(|(_, count)| *count > 0)
+    }
+}
+
+/// `2 spheres`, or `2 spheres, 1 stick, 3 ellipsoids, 4 cones`: those that there are.
+impl Display for BodyCounts {
+    fn fmt(&self, formatter: &mut Formatter) -> fmt::Result {
+        let there = self.all().filter(|(_, count)| *count > 0);
+        let texts: Vec<String> = there.map(|(kind, count)| plural(count, kind.name())).collect();
+        formatter.write_str(&if texts.is_empty() { spheres(0) } else { texts.join(", ") })
+    }
+}
+
+impl Serialize for BodyCounts {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.all().map(|(kind, count)| (format!("{}s", kind.name()), count)))
+    }
 }
 
 /// A count and its noun.

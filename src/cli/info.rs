@@ -1,7 +1,7 @@
 //! `spherule info`: prints the contents of a scene, its memory, and the work that a render skips.
 
 use super::args::InfoArgs;
-use super::contents::{bodies, dropped, found, plural};
+use super::contents::{BodyCounts, dropped, found, plural};
 use super::failure::Failure;
 use super::files::Files;
 use super::particles::ParticleInfo;
@@ -23,10 +23,8 @@ struct Info {
     title: String,
     /// Null for scenes.
     particles: Option<ParticleInfo>,
-    spheres: usize,
-    sticks: usize,
-    ellipsoids: usize,
-    cones: usize,
+    #[serde(flatten)]
+    bodies: BodyCounts,
     dropped_spheres: u64,
     /// Lower and upper corner; null without spheres.
     bounds: Option<[[f64; 3]; 2]>,
@@ -50,10 +48,8 @@ struct Info {
 struct MaterialInfo {
     name: String,
     kind: &'static str,
-    spheres: u64,
-    sticks: u64,
-    ellipsoids: u64,
-    cones: u64,
+    #[serde(flatten)]
+    bodies: BodyCounts,
 }
 
 #[derive(Serialize)]
@@ -127,10 +123,7 @@ impl Info {
             file: source.name().into_owned(),
             title: source.title(scene).into_owned(),
             particles: None,
-            spheres: scene.spheres.len(),
-            sticks: scene.sticks.len(),
-            ellipsoids: scene.ellipsoids.len(),
-            cones: scene.cones.len(),
+            bodies: BodyCounts::of(scene.body_rows()),
             dropped_spheres: world.features.vanished + world.features.hidden,
             bounds: scene.bounds().map(|ends| ends.map(|end| end.to_array())),
             radius: radii(scene),
@@ -151,15 +144,10 @@ impl Info {
     fn print(&self) {
         output::print(format_args!("{}: {}", self.file, self.title));
         self.particles.iter().for_each(ParticleInfo::print);
-        output::print(format_args!("spheres      {}", HumanCount(self.spheres as u64)));
-        if self.sticks > 0 {
-            output::print(format_args!("sticks       {}", HumanCount(self.sticks as u64)));
-        }
-        if self.ellipsoids > 0 {
-            output::print(format_args!("ellipsoids   {}", HumanCount(self.ellipsoids as u64)));
-        }
-        if self.cones > 0 {
-            output::print(format_args!("cones        {}", HumanCount(self.cones as u64)));
+        output::print(format_args!("spheres      {}", HumanCount(self.bodies.0[0])));
+        for (kind, count) in self.bodies.others() {
+            let name = format!("{}s", kind.name());
+            output::print(format_args!("{name:<12} {}", HumanCount(count)));
         }
         if let Some([low, high]) = self.bounds {
             output::print(format_args!("bounds       {low:?} to {high:?}"));
@@ -171,9 +159,8 @@ impl Info {
             output::print(format_args!("cut away     {slice}"));
         }
         for material in self.materials.iter().take(SHOWN) {
-            let MaterialInfo { name, kind, spheres, sticks, ellipsoids, cones } = material;
-            let count = bodies([*spheres, *sticks, *ellipsoids, *cones]);
-            output::print(format_args!("material     {name}: {kind}, {count}"));
+            let MaterialInfo { name, kind, bodies } = material;
+            output::print(format_args!("material     {name}: {kind}, {bodies}"));
         }
         if self.materials.len() > SHOWN {
             let more = self.materials.len() - SHOWN;
@@ -265,17 +252,15 @@ fn materials(scene: &Scene) -> Vec<MaterialInfo> {
     let info = |named: &NamedMaterial| MaterialInfo {
         name: named.name.clone(),
         kind: MaterialKind::of(&named.material).name(),
-        spheres: 0,
-        sticks: 0,
-        ellipsoids: 0,
-        cones: 0,
+        bodies: BodyCounts::default(),
     };
     let mut infos: Vec<MaterialInfo> = scene.materials.iter().map(info).collect();
     for row in 0..scene.spheres.len() {
-        infos[scene.spheres.material_of(row) as usize].spheres += 1;
+        infos[scene.spheres.material_of(row) as usize].bodies.0[0] += 1;
     }
-    scene.sticks.material.iter().for_each(|&row| infos[row as usize].sticks += 1);
-    scene.ellipsoids.material.iter().for_each(|&row| infos[row as usize].ellipsoids += 1);
-    scene.cones.material.iter().for_each(|&row| infos[row as usize].cones += 1);
+    for bodies in scene.other_bodies() {
+        let kind = bodies.kind() as usize;
+        bodies.materials().iter().for_each(|&row| infos[row as usize].bodies.0[kind] += 1);
+    }
     infos
 }

@@ -5,19 +5,17 @@
 
 #[path = "../common/mod.rs"]
 mod common;
-mod cones;
 
 mod adaptive;
 mod bodies;
-mod ellipsoids;
 mod layers;
+mod outlines;
 mod random_scenes;
 mod readers;
 mod resume;
 mod scenes;
 mod slices;
 mod split;
-mod sticks;
 mod stress;
 mod translucency;
 mod truths;

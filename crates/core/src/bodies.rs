@@ -3,7 +3,7 @@
 use crate::body_rows::{BodyKind, BodyRow, BodyRows};
 use crate::body_tree::{Body, BodyHit, BodyTree, FilterRay, Part, Shape, Sphere};
 use crate::bounded::COARSE;
-use crate::bvh::{SMALL_STACK, STACK, Search, Tree, walk};
+use crate::bvh::{Beam, SMALL_STACK, STACK, Search, Tree, walk};
 use crate::capsules::Capsules;
 use crate::cones::Cones;
 use crate::ellipsoids::Ellipsoids;
@@ -72,6 +72,29 @@ impl<'a> BodyTrees<'a> {
             BodyKind::Sphere => self.tree.spheres.len(),
             _ => with_tree!(self, kind, |tree| tree.len()).unwrap_or(0),
         }))
+    }
+
+    /// The kinds other than spheres of which there are bodies.
+    #[inline(always)]
+    pub fn other_kinds(self) -> impl Iterator<Item = BodyKind> {
+        BodyKind::ALL.into_iter().filter(move |&kind| !self.ids(kind).is_empty())
+    }
+
+    /// Places in the user's order of the bodies of a kind that is not that of spheres, by row.
+    #[inline(always)]
+    pub fn ids(&self, kind: BodyKind) -> &'a [u32] {
+        with_tree!(self, kind, |tree| tree.ids()).unwrap_or_default()
+    }
+
+    /// Returns whether any ray in a beam may hit a body: never false if one does.
+    pub fn may_be_hit(&self, beam: &Beam) -> bool {
+        let other = |kind| with_tree!(self, kind, |tree| tree.may_be_hit(beam)) == Some(true);
+        self.tree.bvh.may_be_hit(self.tree.spheres, beam) || BodyKind::ALL.into_iter().any(other)
+    }
+
+    /// Spheres that stand for a body where only what surrounds it counts.
+    pub fn around(&self, row: BodyRow) -> impl Iterator<Item = Sphere> {
+        (0..row.kind.hits()).map(move |half| self.like_sphere(BodyRow { half, ..row }))
     }
 
     /// The place of a body among those of its kind in the user's order.

@@ -16,11 +16,25 @@ pub enum BodyKind {
 }
 
 impl BodyKind {
+    /// Names, in the words of scene files.
+    const NAMES: [&'static str; Self::ALL.len()] = ["sphere", "stick", "ellipsoid", "cone"];
+
     /// All kinds, in their order.
     pub const ALL: [Self; 4] = [Self::Sphere, Self::Capsule, Self::Ellipsoid, Self::Cone];
 
     /// Numbers of hits of a body of each kind: each half of a capsule has one.
     const HITS: [usize; Self::ALL.len()] = [1, 2, 1, 1];
+
+    /// The name of a body of the kind, in the words of scene files.
+    pub const fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+
+    /// The name after an article: `a stick`, `an ellipsoid`.
+    pub fn with_article(self) -> String {
+        let article = if self.name().starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+        format!("{article} {}", self.name())
+    }
 
     /// The number of hits of each body of the kind.
     #[inline(always)]

@@ -5,7 +5,7 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with tolerances"))]
 
-use spherule_core::internals::{cones, elementary, ellipsoids};
+use spherule_core::internals::elementary;
 use spherule_image::{atomic, color, image};
 use spherule_particles::internals::{memory, suggest};
 

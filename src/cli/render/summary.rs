@@ -6,7 +6,7 @@ use super::noise::{NoiseSummary, missed};
 use super::notices::Notices;
 use super::prepare::Prepared;
 use crate::cli::args::ReportArgs;
-use crate::cli::contents::{bodies, found, plural};
+use crate::cli::contents::{BodyCounts, found, plural};
 use crate::cli::devices::DeviceSummary;
 use crate::cli::names::TRAVERSALS;
 use crate::cli::output;
@@ -60,10 +60,8 @@ struct TracerSummary {
 /// Counts and times.
 #[derive(Serialize)]
 struct Statistics {
-    spheres: u64,
-    sticks: u64,
-    ellipsoids: u64,
-    cones: u64,
+    #[serde(flatten)]
+    bodies: BodyCounts,
     dropped_spheres: u64,
     sphere_bytes: usize,
     tree_bytes: usize,
@@ -176,12 +174,7 @@ impl<'a> Summary<'a> {
             self.output,
             plural(statistics.samples, "sample"),
             statistics.load_seconds,
-            bodies([
-                statistics.spheres,
-                statistics.sticks,
-                statistics.ellipsoids,
-                statistics.cones,
-            ]),
+            statistics.bodies,
             statistics.build_seconds,
             BinaryBytes(statistics.tree_bytes as u64),
             statistics.render_seconds,
@@ -191,7 +184,7 @@ impl<'a> Summary<'a> {
             HumanCount(statistics.bounce_rays),
             HumanCount(statistics.shadow_rays),
             plural(statistics.exact_decisions, "decision"),
-            memory::describe(statistics.spheres, columns, statistics.peak_bytes),
+            memory::describe(statistics.bodies.0[0], columns, statistics.peak_bytes),
         ));
         if let Some(device) = &self.tracer.device {
             output::print(format_args!(
@@ -239,10 +232,7 @@ impl Statistics {
         let (world, counters) = (&prepared.world, &render.counters);
         let seconds = render.elapsed.as_secs_f64();
         Self {
-            spheres: world.spheres.len() as u64,
-            sticks: world.sticks.len() as u64,
-            ellipsoids: world.ellipsoids.len() as u64,
-            cones: world.cones.len() as u64,
+            bodies: BodyCounts::of(world.trees().rows()),
             dropped_spheres: world.features.vanished + world.features.hidden,
             sphere_bytes: world.spheres.bytes() + world.appearance.bytes(),
             tree_bytes: world.bvh.bytes(),

@@ -126,24 +126,7 @@ impl Sections {
         let rows: Vec<u32> = (0..count).map(|row| self.material_row(scene, row)).collect();
         let row_of = |material: u32| rows.get(material as usize).copied().unwrap_or(0);
         scene.spheres.append(self.scene.spheres.clone(), &rows);
-        let given = &self.scene.sticks;
-        for row in 0..given.len() {
-            let material = row_of(given.material[row]);
-            scene.sticks.push(given.ends(row), given.radius[row], material, given.colors[row]);
-        }
-        let given = &self.scene.ellipsoids;
-        for row in 0..given.len() {
-            let material = row_of(given.material[row]);
-            let (center, semi_axes) = (given.center[row], given.semi_axes[row]);
-            let (orientation, color) = (given.orientation[row], given.color[row]);
-            scene.ellipsoids.push(center, semi_axes, orientation, material, color);
-        }
-        let given = &self.scene.cones;
-        for row in 0..given.len() {
-            let material = row_of(given.material[row]);
-            let (apex, base) = (given.apex[row], given.base[row]);
-            scene.cones.push(apex, base, given.radius[row], material, given.color[row]);
-        }
+        scene.append_bodies(&self.scene, row_of);
     }
 
     /// The row in `scene` of a material of the sections, which is added if it is not there.

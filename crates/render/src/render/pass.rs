@@ -22,11 +22,7 @@ pub(crate) fn view(job: &Job, Region { x, y, width, height }: Region) -> View {
     let low = DVec2::new(f64::from(x), f64::from(y)) - reach;
     let high = DVec2::new(f64::from(x + width), f64::from(y + height)) + reach;
     let beam = world.camera.beam(low, high);
-    let hit = world.bvh.may_be_hit(&world.spheres, &beam)
-        || world.sticks.all.may_be_hit(&beam)
-        || world.ellipsoids.all.may_be_hit(&beam)
-        || world.cones.all.may_be_hit(&beam);
-    if hit { View::Anything } else { View::Background }
+    if world.trees().may_be_hit(&beam) { View::Anything } else { View::Background }
 }
 
 /// Returns the radiance of all samples of a tile with this view, if they are equal and known.

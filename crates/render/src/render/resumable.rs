@@ -16,6 +16,7 @@ use crate::scene::{Integrator, Settings};
 use crate::trace::Traversal;
 use crate::world::World;
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// The complete state of a render that may have been stopped.
 ///
@@ -275,7 +276,7 @@ impl ResumableRender {
 }
 
 /// Returns why devices do not follow the paths of a render, if so.
-pub fn not_followed(world: &World, settings: &Settings) -> Option<&'static str> {
+pub fn not_followed(world: &World, settings: &Settings) -> Option<Cow<'static, str>> {
     with_processor(world, settings, &Options::default(), |job| device_job(job).err())
 }
 

@@ -4,7 +4,7 @@
 //! on which of them exist at the same time. The numbers here are bytes per sphere and follow
 //! `World::build_taking` step by step.
 
-use super::{Material, NamedMaterial, Rgb, Scene, SliceMode, Spheres};
+use super::{BodyBytes, Material, NamedMaterial, Rgb, Scene, SliceMode, Spheres};
 use std::collections::HashSet;
 
 /// Center and radius in single precision, and the id.
@@ -19,26 +19,6 @@ const BUILDING: u64 = 48;
 
 /// An emissive sphere in the light tree during its construction.
 const EMITTER: u64 = 220;
-
-/// A stick in the scene's columns: ends, radius, material and two colors.
-const STICK: u64 = 84;
-
-/// A stick while its tree is built, in addition: rows and their copy, the sphere around it, its block, and the materials and
-/// colors of both halves.
-const STICK_BUILDING: u64 = 172;
-
-/// An ellipsoid in the scene's columns: center, semi-axes, rotation, material and color.
-const ELLIPSOID: u64 = 96;
-
-/// An ellipsoid while its tree is built, in addition: rows and their copy, the sphere around it, its block, and its material and
-/// color.
-const ELLIPSOID_BUILDING: u64 = 232;
-
-/// A cone in the scene's columns: apex, base, radius, material and color.
-const CONE: u64 = 72;
-
-/// A cone while its tree is built, in addition: as for an ellipsoid.
-const CONE_BUILDING: u64 = 156;
 
 /// A flag, such as for spheres that slices hide from the camera.
 const FLAG: u64 = 1;
@@ -72,12 +52,8 @@ pub struct Footprint {
     pub materials: bool,
     /// Spheres that emit light.
     pub emitters: u64,
-    /// Sticks.
-    pub sticks: u64,
-    /// Ellipsoids.
-    pub ellipsoids: u64,
-    /// Cones.
-    pub cones: u64,
+    /// Memory of all other bodies.
+    pub others: BodyBytes,
     /// Spheres that the camera sees, if slices hide others.
     pub visible: Option<u64>,
 }
@@ -93,9 +69,9 @@ impl Footprint {
         let visible = || (0..spheres.len()).filter(|row| !hidden(row)).count() as u64;
         Self {
             visible: (!hiding.is_empty()).then(visible),
-            sticks: scene.sticks.len() as u64,
-            ellipsoids: scene.ellipsoids.len() as u64,
-            cones: scene.cones.len() as u64,
+            others: scene.other_bodies().into_iter().fold(BodyBytes::default(), |all, bodies| {
+                all.plus(bodies.bytes_each().of(bodies.len()))
+            }),
             ..columns
         }
     }
@@ -107,9 +83,7 @@ impl Footprint {
             colors: ColorColumn::of(&spheres.color),
             materials: !spheres.material.is_empty(),
             emitters: emitters(spheres, materials),
-            sticks: 0,
-            ellipsoids: 0,
-            cones: 0,
+            others: BodyBytes::default(),
             visible: None,
         }
     }
@@ -121,9 +95,7 @@ impl Footprint {
             colors: self.colors.max(other.colors),
             materials: self.materials || other.materials,
             emitters: self.emitters.saturating_add(other.emitters),
-            sticks: self.sticks.saturating_add(other.sticks),
-            ellipsoids: self.ellipsoids.saturating_add(other.ellipsoids),
-            cones: self.cones.saturating_add(other.cones),
+            others: self.others.plus(other.others),
             visible: None,
         }
     }
@@ -132,11 +104,7 @@ impl Footprint {
     pub fn scene(&self) -> u64 {
         let colors = if self.colors == ColorColumn::None { 0 } else { size_of::<Rgb>() as u64 };
         let each = Spheres::POSITION_BYTES + colors + self.material_bytes();
-        let spheres = self.spheres.saturating_mul(each);
-        spheres
-            .saturating_add(self.sticks.saturating_mul(STICK))
-            .saturating_add(self.ellipsoids.saturating_mul(ELLIPSOID))
-            .saturating_add(self.cones.saturating_mul(CONE))
+        self.spheres.saturating_mul(each).saturating_add(self.others.columns)
     }
 
     /// Returns the peak memory in bytes of scene and world, while
@@ -168,14 +136,9 @@ impl Footprint {
         let world = self.resident().saturating_add(kept);
         let hiding = world.saturating_add(each(flags)).saturating_add(hiding);
         let lighting = world.saturating_add(self.emitters.saturating_mul(EMITTER));
-        let other = |count: u64, column: u64, building: u64| {
-            count.saturating_mul(if kept > 0 { building } else { column + building })
-        };
+        let columns = if kept > 0 { 0 } else { self.others.columns };
         let spheres = encoding.max(placing).max(building).max(hiding).max(lighting);
-        spheres
-            .saturating_add(other(self.sticks, STICK, STICK_BUILDING))
-            .saturating_add(other(self.ellipsoids, ELLIPSOID, ELLIPSOID_BUILDING))
-            .saturating_add(other(self.cones, CONE, CONE_BUILDING))
+        spheres.saturating_add(columns).saturating_add(self.others.building)
     }
 
     fn material_bytes(&self) -> u64 {
@@ -272,9 +235,7 @@ mod tests {
             colors: ColorColumn::Rows,
             materials: true,
             emitters: u64::MAX,
-            sticks: u64::MAX,
-            ellipsoids: u64::MAX,
-            cones: u64::MAX,
+            others: BodyBytes { columns: u64::MAX, building: u64::MAX },
             visible: Some(u64::MAX),
         };
         assert_eq!((all.scene(), all.peak(), all.resident()), (u64::MAX, u64::MAX, u64::MAX));

@@ -82,9 +82,9 @@ impl fmt::Display for Identity {
     }
 }
 
-/// Hashes the spheres, and the sticks, ellipsoids and cones if there are any.
-fn bodies(Scene { spheres, sticks, ellipsoids, cones, .. }: &Scene) -> [u8; 32] {
-    let mut hasher = blake3::Hasher::new();
+/// Hashes the spheres, and the other bodies if there are any.
+fn bodies(scene: &Scene) -> [u8; 32] {
+    let (spheres, mut hasher) = (&scene.spheres, blake3::Hasher::new());
     for column in [&spheres.x, &spheres.y, &spheres.z, &spheres.radius] {
         add(&mut hasher, column, |number| number.to_le_bytes());
     }
@@ -94,14 +94,8 @@ fn bodies(Scene { spheres, sticks, ellipsoids, cones, .. }: &Scene) -> [u8; 32] 
         let [[a, b, c, d], [e, f, g, h], [i, j, k, l]] = [red, green, blue];
         [a, b, c, d, e, f, g, h, i, j, k, l]
     });
-    if !sticks.is_empty() {
-        hasher.update(sections::sticks(sticks, |row| row.to_string()).as_bytes());
-    }
-    if !ellipsoids.is_empty() {
-        hasher.update(sections::ellipsoids(ellipsoids, |row| row.to_string()).as_bytes());
-    }
-    if !cones.is_empty() {
-        hasher.update(sections::cones(cones, |row| row.to_string()).as_bytes());
+    for bodies in scene.file_bodies() {
+        hasher.update(sections::bodies(bodies, |row| row.to_string()).as_bytes());
     }
     *hasher.finalize().as_bytes()
 }

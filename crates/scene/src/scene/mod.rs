@@ -7,9 +7,8 @@
 
 mod annotations;
 mod axis;
+mod bodies;
 mod camera;
-mod cones;
-mod ellipsoids;
 pub mod file;
 mod footprint;
 pub mod generate;
@@ -22,7 +21,6 @@ pub mod particles;
 mod preset;
 mod slice;
 mod spheres;
-mod sticks;
 pub(crate) mod write;
 
 pub use crate::color::{Rgb, linear_from_srgb, srgb};
@@ -33,9 +31,8 @@ pub use annotations::{
     Anchor, Annotations, AxisTripod, ColorBar, ColorLegend, Label, Lettering, ScaleBar,
 };
 pub use axis::Axis;
+pub use bodies::{BodyBytes, BodyColumns, Cones, Ellipsoids, Hull, PlacedBodies, Sticks};
 pub use camera::{Camera, Insets, Lens, Pose, Projection};
-pub use cones::Cones;
-pub use ellipsoids::Ellipsoids;
 pub use file::included_files;
 pub use footprint::{ColorColumn, Footprint};
 pub use identity::Identity;
@@ -46,7 +43,6 @@ pub use preset::Preset;
 pub use slice::{Slice, SliceMode, SlicePlane};
 pub use spheres::Spheres;
 pub use spherule_particles::{FileError, Place};
-pub use sticks::Sticks;
 pub use write::{Header, text_without_columns, write, write_as};
 
 /// A whole scene: objects, lights, camera and settings.

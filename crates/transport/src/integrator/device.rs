@@ -9,6 +9,7 @@ use crate::world::{
     DeviceCaustics, DeviceIntegration, DeviceJob, DeviceLights, DeviceRoulette, DeviceSky, Picture,
     Radiance, World,
 };
+use std::borrow::Cow;
 
 /// Most shadow samples of a surface in Whitted ray tracing.
 const MAX_SHADOW_SAMPLES: usize = 1024;
@@ -20,7 +21,7 @@ const MAX_MIRRORED_SUNS: usize = 4;
 ///
 /// # Errors
 /// A reason why devices do not follow paths.
-pub fn device_job<'a>(job: &'a Job) -> Result<DeviceJob<'a>, &'static str> {
+pub fn device_job<'a>(job: &'a Job) -> Result<DeviceJob<'a>, Cow<'static, str>> {
     let world = job.world;
     let roulette = match job.settings.roulette {
         Roulette::None => DeviceRoulette::None,
@@ -34,7 +35,7 @@ pub fn device_job<'a>(job: &'a Job) -> Result<DeviceJob<'a>, &'static str> {
             let sky = whitted::samples_sky(world);
             let lights = world.lights.len() + usize::from(sky);
             if lights.saturating_mul(shadow_samples as usize) > MAX_SHADOW_SAMPLES {
-                return Err("each surface has many shadow samples");
+                return Err("each surface has many shadow samples".into());
             }
             DeviceIntegration::Whitted { depth, roulette, shadow_samples, sky }
         }
@@ -47,10 +48,10 @@ pub fn device_job<'a>(job: &'a Job) -> Result<DeviceJob<'a>, &'static str> {
         return Err(reason);
     }
     if job.settings.sampler != SamplerKind::Sobol {
-        return Err("devices have Sobol points only");
+        return Err("devices have Sobol points only".into());
     }
     if job.elisions != Elisions::ALL {
-        return Err("no work is to be skipped");
+        return Err("no work is to be skipped".into());
     }
     let lights = match integration {
         DeviceIntegration::Occlusion { .. } => DeviceLights::default(),
@@ -77,32 +78,26 @@ pub fn device_job<'a>(job: &'a Job) -> Result<DeviceJob<'a>, &'static str> {
 }
 
 /// Returns what a job has that devices do not do.
-fn unsupported(job: &Job) -> Option<&'static str> {
+fn unsupported(job: &Job) -> Option<Cow<'static, str>> {
     let world = job.world;
     if world.is_sliced() {
-        return Some("the scene has slices");
+        return Some("the scene has slices".into());
     }
-    if !world.sticks.is_empty() {
-        return Some("the scene has sticks");
-    }
-    if !world.ellipsoids.is_empty() {
-        return Some("the scene has ellipsoids");
-    }
-    if !world.cones.is_empty() {
-        return Some("the scene has cones");
+    if let Some(kind) = world.trees().other_kinds().next() {
+        return Some(format!("the scene has {}s", kind.name()).into());
     }
     if world.features.translucent {
-        return Some("the scene has translucent bodies");
+        return Some("the scene has translucent bodies".into());
     }
     if let Integrator::Ao { distance } = job.settings.integrator {
-        return (distance == 0.0).then_some("nothing occludes");
+        return (distance == 0.0).then(|| "nothing occludes".into());
     }
     if job.samples_mirrored_light() && world.lights.suns.len() > MAX_MIRRORED_SUNS {
-        return Some("many suns are mirrored");
+        return Some("many suns are mirrored".into());
     }
     let paths = job.settings.integrator == Integrator::Path;
     if paths && job.settings.caustics && world.caustic_casters.is_deep() {
-        return Some("the tree of specular spheres is deep");
+        return Some("the tree of specular spheres is deep".into());
     }
     None
 }

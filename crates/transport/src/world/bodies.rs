@@ -1,4 +1,4 @@
-//! The sticks, ellipsoids and cones of a scene in world space.
+//! The bodies of a scene other than spheres, in world space.
 
 use super::appearance::{Colors, Column};
 use super::{Appearance, Materials, Transform, World};
@@ -7,12 +7,11 @@ use crate::body_rows::{BodyKind, BodyRow, BodyRows};
 use crate::body_tree::{BodyTree, Shape};
 use crate::bvh::Tree;
 use crate::bvh::builders::Builder;
-use crate::capsules::{Capsule, CapsuleItem};
-use crate::cones::{Cone, ConeItem};
-use crate::ellipsoids::{Ellipsoid, EllipsoidItem};
-use crate::scene::{Rgb, Scene};
-use crate::shade::{MaterialId, MaterialKind};
-use glam::DVec3;
+use crate::capsules::Capsule;
+use crate::cones::Cone;
+use crate::ellipsoids::Ellipsoid;
+use crate::scene::{PlacedBodies, Rgb, Scene};
+use crate::shade::MaterialKind;
 use std::borrow::Cow;
 
 /// Bodies of one kind in world space, with their tree.
@@ -57,18 +56,8 @@ impl<S: Shape> WorldBodies<S> {
         Self { all, visible }
     }
 
-    /// Returns the number of bodies.
-    pub fn len(&self) -> usize {
-        self.all.len()
-    }
-
-    /// Returns whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.all.is_empty()
-    }
-
     /// Returns the bodies that the camera sees.
-    pub(crate) fn seen(&self) -> &BodyTree<S> {
+    fn seen(&self) -> &BodyTree<S> {
         self.visible.as_ref().map_or(&self.all, |visible| &visible.tree)
     }
 
@@ -78,61 +67,84 @@ impl<S: Shape> WorldBodies<S> {
     }
 }
 
-/// Transforms the sticks that slices leave, and builds their tree.
-pub(super) fn sticks(scene: &Scene, transform: &Transform) -> WorldBodies<Capsule> {
-    let sticks = &scene.sticks;
-    let place = |row: usize| {
-        let ends = sticks.ends(row).map(|end| transform.point(end).as_vec3());
-        let radius = transform.length(sticks.radius[row]) as f32;
-        CapsuleItem { ends, radius, id: row as u32 }
-    };
-    let items: Vec<_> = scene.shown_sticks().map(place).filter(|item| item.radius > 0.0).collect();
-    let is_hidden = |row: u32| hides(scene, sticks.middle(row as usize));
-    WorldBodies::build(&items, sticks.len(), is_hidden)
+/// All bodies of a scene that are no spheres.
+#[derive(Clone, Debug, Default)]
+pub struct OtherBodies {
+    /// Sticks, whose halves have rows of the appearance after those of the spheres.
+    pub sticks: WorldBodies<Capsule>,
+    /// Ellipsoids, which have rows after those.
+    pub ellipsoids: WorldBodies<Ellipsoid>,
+    /// Cones, which have rows after those.
+    pub cones: WorldBodies<Cone>,
 }
 
-/// Transforms the ellipsoids that slices leave, and builds their tree. Those that are too small for single precision are left
-/// out.
-pub(super) fn ellipsoids(scene: &Scene, transform: &Transform) -> WorldBodies<Ellipsoid> {
-    let ellipsoids = &scene.ellipsoids;
-    let place = |row: usize| {
-        let center = transform.point(ellipsoids.center[row]).as_vec3();
-        let semi_axes = ellipsoids.semi_axes[row] * transform.scale;
-        EllipsoidItem::new(center, semi_axes, ellipsoids.orientation[row], row as u32).ok()
-    };
-    let items: Vec<_> = scene.shown_ellipsoids().filter_map(place).collect();
-    let is_hidden = |row: u32| hides(scene, ellipsoids.center[row as usize]);
-    WorldBodies::build(&items, ellipsoids.len(), is_hidden)
+impl OtherBodies {
+    /// Transforms the bodies that slices leave, and builds their trees. Those that are too small for single precision are left out.
+    pub(super) fn build(scene: &Scene, transform: &Transform) -> Self {
+        Self {
+            sticks: placed(&scene.sticks, scene, transform),
+            ellipsoids: placed(&scene.ellipsoids, scene, transform),
+            cones: placed(&scene.cones, scene, transform),
+        }
+    }
+
+    /// Joins the bodies with the spheres of a tree.
+    #[inline(always)]
+    pub(super) fn trees<'a>(&'a self, tree: Tree<'a>) -> BodyTrees<'a> {
+        BodyTrees {
+            tree,
+            capsules: Some(&self.sticks.all),
+            ellipsoids: Some(&self.ellipsoids.all),
+            cones: Some(&self.cones.all),
+        }
+    }
+
+    /// Joins the bodies that the camera sees with the spheres of a tree.
+    fn seen<'a>(&'a self, tree: Tree<'a>) -> BodyTrees<'a> {
+        BodyTrees {
+            tree,
+            capsules: Some(self.sticks.seen()),
+            ellipsoids: Some(self.ellipsoids.seen()),
+            cones: Some(self.cones.seen()),
+        }
+    }
+
+    /// The rows among all of the bodies of a kind that the camera sees, if these are fewer.
+    fn rows_of_seen(&self, kind: BodyKind) -> Option<&[u32]> {
+        match kind {
+            BodyKind::Sphere => None,
+            BodyKind::Capsule => self.sticks.rows_of_seen(),
+            BodyKind::Ellipsoid => self.ellipsoids.rows_of_seen(),
+            BodyKind::Cone => self.cones.rows_of_seen(),
+        }
+    }
+
+    /// Returns whether slices hide any from the camera.
+    pub(super) fn any_hidden(&self) -> bool {
+        BodyKind::ALL.into_iter().any(|kind| self.rows_of_seen(kind).is_some())
+    }
 }
 
-/// Transforms the cones that slices leave, and builds their tree. Those that are too small for single precision are left out.
-pub(super) fn cones(scene: &Scene, transform: &Transform) -> WorldBodies<Cone> {
-    let cones = &scene.cones;
-    let place = |row: usize| {
-        let [apex, base] =
-            [cones.apex[row], cones.base[row]].map(|point| transform.point(point).as_vec3());
-        let radius = transform.length(cones.radius[row]) as f32;
-        ConeItem::new(apex, base, radius, row as u32).ok()
+/// Transforms the bodies of a kind that slices leave, and builds their tree.
+fn placed<B: PlacedBodies>(
+    bodies: &B,
+    scene: &Scene,
+    transform: &Transform,
+) -> WorldBodies<B::Shape> {
+    let place = |row| bodies.place(row, |point| transform.point(point), transform.scale);
+    let items: Vec<_> = scene.shown_of(bodies).filter_map(place).collect();
+    let is_hidden = |row: u32| {
+        let middle = bodies.middle(row as usize);
+        scene.slices.iter().any(|slice| slice.hides(middle))
     };
-    let items: Vec<_> = scene.shown_cones().filter_map(place).collect();
-    let is_hidden = |row: u32| hides(scene, cones.middle(row as usize));
-    WorldBodies::build(&items, cones.len(), is_hidden)
-}
-
-fn hides(scene: &Scene, middle: DVec3) -> bool {
-    scene.slices.iter().any(|slice| slice.hides(middle))
+    WorldBodies::build(&items, bodies.len(), is_hidden)
 }
 
 impl World {
     /// Returns all bodies.
     #[inline(always)]
     pub fn trees(&self) -> BodyTrees<'_> {
-        BodyTrees {
-            tree: Tree { bvh: &self.bvh, spheres: &self.spheres },
-            capsules: Some(&self.sticks.all),
-            ellipsoids: Some(&self.ellipsoids.all),
-            cones: Some(&self.cones.all),
-        }
+        self.others.trees(Tree { bvh: &self.bvh, spheres: &self.spheres })
     }
 
     /// Returns the bodies that the camera sees.
@@ -140,21 +152,14 @@ impl World {
         let visible = self.camera_visible.as_ref();
         let (bvh, spheres) =
             visible.map_or((&self.bvh, &self.spheres), |visible| (&visible.bvh, &visible.spheres));
-        BodyTrees {
-            tree: Tree { bvh, spheres },
-            capsules: Some(self.sticks.seen()),
-            ellipsoids: Some(self.ellipsoids.seen()),
-            cones: Some(self.cones.seen()),
-        }
+        self.others.seen(Tree { bvh, spheres })
     }
 
     /// Returns the row among all bodies of a row of [`World::visible_trees`].
     pub(crate) fn row_of_visible(&self, body: BodyRow) -> BodyRow {
         let rows = match body.kind {
             BodyKind::Sphere => self.camera_visible.as_ref().map(|visible| &*visible.row),
-            BodyKind::Capsule => self.sticks.rows_of_seen(),
-            BodyKind::Ellipsoid => self.ellipsoids.rows_of_seen(),
-            BodyKind::Cone => self.cones.rows_of_seen(),
+            kind => self.others.rows_of_seen(kind),
         };
         BodyRow { row: rows.map_or(body.row, |rows| rows[body.row] as usize), ..body }
     }
@@ -173,7 +178,7 @@ impl World {
     /// Returns whether there are bodies other than spheres.
     #[inline(always)]
     pub fn has_other_bodies(&self) -> bool {
-        !self.sticks.is_empty() || !self.ellipsoids.is_empty() || !self.cones.is_empty()
+        self.trees().other_kinds().next().is_some()
     }
 
     /// Returns the body of a hit; `None` for the ground, and for none.
@@ -182,69 +187,50 @@ impl World {
         self.body_rows().row(hit)
     }
 
-    /// Returns how many bodies of a kind, which is not that of spheres, have a kind of material.
-    pub(super) fn count_of(&self, kind: BodyKind, material: MaterialKind) -> u64 {
-        let rows = self.body_rows();
-        let hits = (rows.first(kind)..).step_by(kind.hits()).take(rows.count(kind));
-        hits.filter(|&hit| self.appearance.material.row(hit).kind() == material).count() as u64
-    }
-}
-
-/// All bodies that are no spheres.
-pub(super) struct OtherBodies<'a> {
-    pub(super) sticks: &'a WorldBodies<Capsule>,
-    pub(super) ellipsoids: &'a WorldBodies<Ellipsoid>,
-    pub(super) cones: &'a WorldBodies<Cone>,
-}
-
-impl OtherBodies<'_> {
-    /// Returns the material and the color of each hit: of the halves of sticks, then of ellipsoids, then of cones.
-    fn appearances(
-        &self,
-        scene: &Scene,
-        materials: &Materials,
-    ) -> impl Iterator<Item = (MaterialId, Rgb)> {
-        let Scene { sticks, ellipsoids, cones, .. } = scene;
-        let halves = self.sticks.all.ids().iter().flat_map(|&id| {
-            let row = id as usize;
-            sticks.colors[row].map(|color| (sticks.material[row], color))
-        });
-        let of_ellipsoids = self.ellipsoids.all.ids().iter();
-        let of_ellipsoids = of_ellipsoids
-            .map(|&id| (ellipsoids.material[id as usize], ellipsoids.color[id as usize]));
-        let of_cones = self.cones.all.ids().iter();
-        let of_cones = of_cones.map(|&id| (cones.material[id as usize], cones.color[id as usize]));
-        let all = halves.chain(of_ellipsoids).chain(of_cones);
-        all.map(|(material, color)| (materials.id(material), color))
-    }
-
-    /// Appends rows for these bodies to the appearance of `spheres` spheres.
-    pub(super) fn append_appearance(
-        &self,
-        appearance: &mut Appearance,
-        scene: &Scene,
-        materials: &Materials,
-        spheres: usize,
-    ) {
-        let rows = || self.appearances(scene, materials);
-        let Some((first, _)) = rows().next() else { return };
-        let uniform = match &appearance.material {
-            Column::Uniform(id) => spheres == 0 || *id == first,
-            Column::Rows(rows) => rows.is_empty(),
-        };
-        appearance.material = if uniform && rows().all(|(id, _)| id == first) {
-            Column::Uniform(first)
-        } else {
-            let own = (0..spheres).map(|row| appearance.material.row(row));
-            Column::Rows(own.chain(rows().map(|(id, _)| id)).collect())
-        };
-        if appearance.color.is_some() || !rows().all(|(_, color)| color == Rgb::ONE) {
-            let own = (0..spheres).map(|row| match &appearance.color {
-                Some(colors) => colors.row(row),
-                None => Rgb::ONE,
-            });
-            let all: Vec<Rgb> = own.chain(rows().map(|(_, color)| color)).collect();
-            appearance.color = Some(Colors::new(Cow::Owned(all)));
+    /// Returns how many bodies of a kind have each kind of material, in the order of [`MaterialKind::ALL`].
+    pub(super) fn count_materials(&self, kind: BodyKind) -> [u64; MaterialKind::COUNT] {
+        let (rows, mut counts) = (self.body_rows(), [0; MaterialKind::COUNT]);
+        for hit in (rows.first(kind)..).step_by(kind.hits()).take(rows.count(kind)) {
+            counts[self.appearance.material.row(hit).kind() as usize] += 1;
         }
+        counts
+    }
+}
+
+/// Appends rows for bodies that are no spheres to the appearance of `spheres` spheres.
+pub(super) fn append_appearance(
+    appearance: &mut Appearance,
+    trees: BodyTrees,
+    scene: &Scene,
+    materials: &Materials,
+) {
+    let spheres = trees.rows().count(BodyKind::Sphere);
+    // The material and the color of each hit.
+    let rows = || {
+        scene.other_bodies().into_iter().flat_map(|bodies| {
+            trees.ids(bodies.kind()).iter().flat_map(move |&id| {
+                let material = materials.id(bodies.materials()[id as usize]);
+                bodies.colors(id as usize).iter().map(move |&color| (material, color))
+            })
+        })
+    };
+    let Some((first, _)) = rows().next() else { return };
+    let uniform = match &appearance.material {
+        Column::Uniform(id) => spheres == 0 || *id == first,
+        Column::Rows(rows) => rows.is_empty(),
+    };
+    appearance.material = if uniform && rows().all(|(id, _)| id == first) {
+        Column::Uniform(first)
+    } else {
+        let own = (0..spheres).map(|row| appearance.material.row(row));
+        Column::Rows(own.chain(rows().map(|(id, _)| id)).collect())
+    };
+    if appearance.color.is_some() || !rows().all(|(_, color)| color == Rgb::ONE) {
+        let own = (0..spheres).map(|row| match &appearance.color {
+            Some(colors) => colors.row(row),
+            None => Rgb::ONE,
+        });
+        let all: Vec<Rgb> = own.chain(rows().map(|(_, color)| color)).collect();
+        appearance.color = Some(Colors::new(Cow::Owned(all)));
     }
 }

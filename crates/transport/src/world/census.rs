@@ -14,14 +14,8 @@ const TOUCH: f64 = 1e-5;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is one independent fact of the census")]
 pub struct Features {
-    /// Spheres of each kind of material, in the order of [`MaterialKind::ALL`].
-    pub spheres_by_kind: [u64; MaterialKind::COUNT],
-    /// Sticks of each kind of material, likewise.
-    pub sticks_by_kind: [u64; MaterialKind::COUNT],
-    /// Ellipsoids of each kind of material, likewise.
-    pub ellipsoids_by_kind: [u64; MaterialKind::COUNT],
-    /// Cones of each kind of material, likewise.
-    pub cones_by_kind: [u64; MaterialKind::COUNT],
+    /// Bodies of each kind ([`BodyKind::ALL`]), of each kind of material ([`MaterialKind::ALL`]).
+    pub bodies_by_kind: [[u64; MaterialKind::COUNT]; BodyKind::ALL.len()],
     /// Spheres too small for single precision relative to the largest coordinate, omitted.
     pub vanished: u64,
     /// Spheres that coincide with an earlier one, among many about one center, omitted.
@@ -56,16 +50,8 @@ pub struct Features {
 impl Features {
     /// Counts the features of a world; `omitted` spheres of its scene are not in the world.
     pub(super) fn census(world: &World, omitted: OmittedSpheres) -> Self {
-        let mut spheres_by_kind = [0; MaterialKind::COUNT];
-        for row in 0..world.spheres.len() {
-            spheres_by_kind[world.appearance.material.row(row).kind() as usize] += 1;
-        }
         Self {
-            spheres_by_kind,
-            sticks_by_kind: MaterialKind::ALL.map(|kind| world.count_of(BodyKind::Capsule, kind)),
-            ellipsoids_by_kind: MaterialKind::ALL
-                .map(|kind| world.count_of(BodyKind::Ellipsoid, kind)),
-            cones_by_kind: MaterialKind::ALL.map(|kind| world.count_of(BodyKind::Cone, kind)),
+            bodies_by_kind: BodyKind::ALL.map(|kind| world.count_materials(kind)),
             vanished: omitted.vanished,
             cut_away: omitted.cut_away,
             cuts: world.cut.len() as u64,
@@ -103,15 +89,14 @@ impl Features {
         self.counts_of(kind).iter().sum()
     }
 
-    /// Returns the numbers of spheres, sticks, ellipsoids and cones with this kind of material.
-    pub fn counts_of(&self, kind: MaterialKind) -> [u64; 4] {
-        let columns = [
-            &self.spheres_by_kind,
-            &self.sticks_by_kind,
-            &self.ellipsoids_by_kind,
-            &self.cones_by_kind,
-        ];
-        columns.map(|column| column[kind as usize])
+    /// Returns the numbers of bodies of each kind with this kind of material.
+    pub fn counts_of(&self, kind: MaterialKind) -> [u64; BodyKind::ALL.len()] {
+        self.bodies_by_kind.map(|counts| counts[kind as usize])
+    }
+
+    /// Returns the number of spheres with this kind of material.
+    pub(super) fn spheres_of(&self, kind: MaterialKind) -> u64 {
+        self.bodies_by_kind[BodyKind::Sphere as usize][kind as usize]
     }
 
     /// Returns whether anything has this kind of material.
@@ -223,7 +208,7 @@ mod tests {
     #[test]
     fn what_is_absent_is_skipped_and_nothing_else() {
         let all = Features {
-            spheres_by_kind: [1; MaterialKind::COUNT],
+            bodies_by_kind: [[1; MaterialKind::COUNT]; BodyKind::ALL.len()],
             cuts: 1,
             ground_kind: Some(MaterialKind::Lambertian),
             colors: true,

@@ -3,11 +3,12 @@
 
 use super::fit::{self, Placement};
 use super::{Transform, WorldError, spheres};
+use crate::capsules::Capsules;
 use crate::image::Image;
 use crate::memory;
 use crate::scene::{
-    self, BRIGHTEST, Cones, Ellipsoids, EnvironmentMap, Ground, Material, NamedMaterial, Rgb,
-    Scene, Sticks, is_radiance, keys,
+    self, BRIGHTEST, BodyColumns, EnvironmentMap, Ground, Material, NamedMaterial, Rgb, Scene,
+    is_radiance, keys,
 };
 
 /// Checks what does not depend on the number of spheres.
@@ -24,9 +25,11 @@ pub(super) fn check(scene: &Scene) -> Result<(), WorldError> {
         picture(image, *scale)?;
     }
     scene.ground.as_ref().map_or(Ok(()), |plane| ground(plane, &scene.materials))?;
-    sticks(&scene.sticks, scene.spheres.len(), &scene.materials)?;
-    ellipsoids(scene)?;
-    cones(scene)?;
+    let mut hits = scene.spheres.len();
+    for columns in scene.other_bodies() {
+        bodies(columns, hits, &scene.materials)?;
+        hits += columns.kind().hits() * columns.len();
+    }
     let invalid = scene.spheres.color.iter().position(|&color| !is_fraction(color));
     invalid.map_or(Ok(()), |row| {
         let color = scene.spheres.color[row];
@@ -38,12 +41,6 @@ pub(super) fn check(scene: &Scene) -> Result<(), WorldError> {
 
 fn require(holds: bool, message: impl FnOnce() -> String) -> Result<(), WorldError> {
     if holds { Ok(()) } else { Err(WorldError::Invalid(message())) }
-}
-
-fn more_than_0(name: &str, value: f64) -> Result<(), WorldError> {
-    require(value > 0.0 && value < f64::INFINITY, || {
-        format!("{name} is {value}, but must be finite and more than 0")
-    })
 }
 
 fn is_fraction(color: Rgb) -> bool {
@@ -91,104 +88,36 @@ fn is_solid(materials: &[NamedMaterial], row: u32) -> bool {
     materials.get(row as usize).is_some_and(|named| named.material.is_solid())
 }
 
-/// Checks columns of ellipsoids.
-fn ellipsoids(scene: &Scene) -> Result<(), WorldError> {
-    let Ellipsoids { center, semi_axes, orientation, material, color } = &scene.ellipsoids;
-    let n = center.len();
-    let lengths = [semi_axes.len(), orientation.len(), material.len(), color.len()];
-    require(lengths == [n; 4], || {
-        format!("the columns of the ellipsoids differ in length from `center`, {n}")
+/// Checks columns of bodies of one kind; `hits` are those of the kinds before it.
+fn bodies(
+    bodies: &dyn BodyColumns,
+    hits: usize,
+    materials: &[NamedMaterial],
+) -> Result<(), WorldError> {
+    let ((column, lengths), kind) = (bodies.lengths(), bodies.kind());
+    let (count, name) = (lengths[0], kind.name());
+    require(lengths.iter().all(|&length| length == count), || {
+        format!("the columns of the {name}s differ in length from `{column}`, {count}")
     })?;
-    let others = scene.spheres.len() + 2 * scene.sticks.len();
-    let most = Ellipsoids::MAX.min((scene::Spheres::MAX as usize).saturating_sub(others));
-    require(n <= most, || {
-        format!("too many ellipsoids: {n}, but at most {most} fit; render a part of them")
+    let left = (scene::Spheres::MAX as usize).saturating_sub(hits) / kind.hits();
+    let most = Capsules::MAX.min(left);
+    require(count <= most, || {
+        format!("too many {name}s: {count}, but at most {most} fit; render a part of them")
     })?;
-    for row in 0..n {
-        require(center[row].is_finite(), || {
-            format!("the center of ellipsoid {row} must be finite")
-        })?;
-        for axis in semi_axes[row].to_array() {
-            more_than_0(&format!("a semi-axis of ellipsoid {row}"), axis)?;
-        }
-        let ratio = semi_axes[row].max_element() / semi_axes[row].min_element();
-        require(ratio <= Ellipsoids::MAX_RATIO, || {
-            let most = Ellipsoids::MAX_RATIO;
-            format!(
-                "a semi-axis of ellipsoid {row} is {ratio} times another, but at most {most} fit"
-            )
-        })?;
-        require(orientation[row].is_finite() && orientation[row].is_normalized(), || {
-            format!("the orientation of ellipsoid {row} must be a unit quaternion")
-        })?;
-        require(is_fraction(color[row]), || {
-            let color = color[row];
-            format!("the color of ellipsoid {row} is {color}, but must be 0 to 1 in each channel")
-        })?;
-        require(is_solid(&scene.materials, material[row]), || {
-            format!("ellipsoid {row} must have a material, which cannot be glass or an emitter")
-        })?;
-    }
-    Ok(())
-}
-
-/// Checks columns of cones.
-fn cones(scene: &Scene) -> Result<(), WorldError> {
-    let Cones { apex, base, radius, material, color } = &scene.cones;
-    let n = radius.len();
-    require([apex.len(), base.len(), material.len(), color.len()] == [n; 4], || {
-        format!("the columns of the cones differ in length from `radius`, {n}")
-    })?;
-    let others = scene.spheres.len() + 2 * scene.sticks.len() + scene.ellipsoids.len();
-    let most = Cones::MAX.min((scene::Spheres::MAX as usize).saturating_sub(others));
-    require(n <= most, || {
-        format!("too many cones: {n}, but at most {most} fit; render a part of them")
-    })?;
-    for row in 0..n {
-        require(apex[row].is_finite() && base[row].is_finite(), || {
-            format!("the apex and the base of cone {row} must be finite")
-        })?;
-        more_than_0(&format!("the radius of cone {row}"), radius[row])?;
-        let ratio = scene.cones.ratio(row);
-        require(ratio <= Cones::MAX_RATIO, || {
-            let most = Cones::MAX_RATIO;
-            format!(
-                "of the height and the radius of cone {row} one is {ratio} times the other, but at most {most} fit"
-            )
-        })?;
-        require(is_fraction(color[row]), || {
-            let color = color[row];
-            format!("the color of cone {row} is {color}, but must be 0 to 1 in each channel")
-        })?;
-        require(is_solid(&scene.materials, material[row]), || {
-            format!("cone {row} must have a material, which cannot be glass or an emitter")
-        })?;
-    }
-    Ok(())
-}
-
-/// Checks columns of sticks.
-fn sticks(sticks: &Sticks, spheres: usize, materials: &[NamedMaterial]) -> Result<(), WorldError> {
-    let Sticks { from, to, radius, material, colors } = sticks;
-    let n = radius.len();
-    require([from.len(), to.len(), material.len(), colors.len()] == [n; 4], || {
-        format!("the columns of the sticks differ in length from `radius`, {n}")
-    })?;
-    let most = Sticks::MAX.min((scene::Spheres::MAX as usize).saturating_sub(spheres) / 2);
-    require(n <= most, || {
-        format!("too many sticks: {n}, but at most {most} fit; render a part of them")
-    })?;
-    for row in 0..n {
-        let valid = from[row].is_finite() && to[row].is_finite();
-        require(valid, || format!("the ends of stick {row} must be finite"))?;
-        more_than_0(&format!("the radius of stick {row}"), radius[row])?;
-        colors[row].iter().try_for_each(|&color| {
-            require(is_fraction(color), || {
-                format!("a color of stick {row} is {color}, but must be 0 to 1 in each channel")
+    for row in 0..count {
+        bodies.fault(row).map_or(Ok(()), |fault| Err(WorldError::Invalid(fault)))?;
+        let colors = bodies.colors(row);
+        let invalid = colors.iter().find(|&&color| !is_fraction(color));
+        invalid.map_or(Ok(()), |color| {
+            let which = if colors.len() > 1 { "a" } else { "the" };
+            require(false, || {
+                format!(
+                    "{which} color of {name} {row} is {color}, but must be 0 to 1 in each channel"
+                )
             })
         })?;
-        require(is_solid(materials, material[row]), || {
-            format!("stick {row} must have a material, which cannot be glass or an emitter")
+        require(is_solid(materials, bodies.materials()[row]), || {
+            format!("{name} {row} must have a material, which cannot be glass or an emitter")
         })?;
     }
     Ok(())

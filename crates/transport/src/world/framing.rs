@@ -135,15 +135,10 @@ fn fit_distance(scene: &mut Scene, radius: f64) -> f64 {
 
 /// Returns a sphere about the middle of the bounds that contains all spheres and points.
 fn bounding_sphere(scene: &Scene, points: &[DVec3]) -> (DVec3, f64) {
-    let Scene { spheres, sticks, ellipsoids, cones, .. } = scene;
+    let spheres = &scene.spheres;
     let rows = || (0..spheres.len()).map(|row| (spheres.center(row), spheres.radius[row]));
-    let ends =
-        || (0..sticks.len()).flat_map(|row| sticks.ends(row).map(|end| (end, sticks.radius[row])));
-    let around =
-        || (0..ellipsoids.len()).map(|row| (ellipsoids.center[row], ellipsoids.reach(row)));
-    let of_cones = || (0..cones.len()).flat_map(|row| cones.hull(row));
     let points = || points.iter().map(|&point| (point, 0.0));
-    let all = || rows().chain(ends()).chain(around()).chain(of_cones()).chain(points());
+    let all = || rows().chain(scene.other_hulls()).chain(points());
     let low = all().fold(DVec3::INFINITY, |low, (center, radius)| low.min(center - radius));
     let high = all().fold(DVec3::NEG_INFINITY, |high, (center, radius)| high.max(center + radius));
     let middle = (low + high) / 2.0;

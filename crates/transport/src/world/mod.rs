@@ -26,7 +26,7 @@ mod transform;
 mod visibility;
 
 pub use appearance::{Appearance, Colors, Column};
-pub use bodies::{VisibleBodies, WorldBodies};
+pub use bodies::{OtherBodies, VisibleBodies, WorldBodies};
 pub use camera::{Camera, CameraTerms};
 pub use camera_visible::CameraVisible;
 pub use caustics::CausticCasters;
@@ -56,11 +56,8 @@ pub use transform::Transform;
 pub use visibility::Visibility;
 
 use crate::body_rows::{BodyKind, BodyRows};
-use crate::bvh::Bvh;
 use crate::bvh::builders::Builder;
-use crate::capsules::Capsule;
-use crate::cones::Cone;
-use crate::ellipsoids::Ellipsoid;
+use crate::bvh::{Bvh, Tree};
 use crate::memory::Shortage;
 use crate::ray::{GROUND, MISS};
 use crate::scene::{self, Background, Footprint, Rgb, Scene};
@@ -92,16 +89,10 @@ pub struct World {
     /// The tree over them.
     #[doc(hidden)]
     pub bvh: Bvh,
-    /// Sticks, whose halves have rows of the appearance after those of the spheres.
+    /// All other bodies.
     #[doc(hidden)]
-    pub sticks: WorldBodies<Capsule>,
-    /// Ellipsoids, which have rows after those.
-    #[doc(hidden)]
-    pub ellipsoids: WorldBodies<Ellipsoid>,
-    /// Cones, which have rows after those.
-    #[doc(hidden)]
-    pub cones: WorldBodies<Cone>,
-    /// Numbers of bodies of the scene other than spheres, those that slices remove included.
+    pub others: OtherBodies,
+    /// Numbers of bodies of the scene, those that slices remove included.
     scene_bodies: BodyRows,
     /// Planes at which spheres are cut.
     #[doc(hidden)]
@@ -251,13 +242,9 @@ impl World {
         let Parts { transform, placement, spheres, bvh, mut appearance, camera_visible, omitted } =
             parts;
         let materials = Materials::build(&scene.materials);
-        let sticks = bodies::sticks(scene, &transform);
-        let ellipsoids = bodies::ellipsoids(scene, &transform);
-        let cones = bodies::cones(scene, &transform);
-        let count = spheres.len();
-        let others =
-            bodies::OtherBodies { sticks: &sticks, ellipsoids: &ellipsoids, cones: &cones };
-        others.append_appearance(&mut appearance, scene, &materials, count);
+        let others = OtherBodies::build(scene, &transform);
+        let trees = others.trees(Tree { bvh: &bvh, spheres: &spheres });
+        bodies::append_appearance(&mut appearance, trees, scene, &materials);
         let cut = Cut::build(&scene.slices, &transform);
         let camera = Camera::build(scene, &placement, &transform);
         let environment = Environment::build(&scene.environment, &scene.look);
@@ -271,15 +258,8 @@ impl World {
             spheres,
             appearance,
             bvh,
-            sticks,
-            ellipsoids,
-            cones,
-            scene_bodies: BodyRows([
-                0,
-                scene.sticks.len(),
-                scene.ellipsoids.len(),
-                scene.cones.len(),
-            ]),
+            others,
+            scene_bodies: scene.body_rows(),
             cut,
             camera_visible,
             coincident: Vec::new(),
@@ -304,11 +284,7 @@ impl World {
 
     /// Returns whether slices hide or cut spheres, so that the processor traces all rays.
     pub fn is_sliced(&self) -> bool {
-        self.camera_visible.is_some()
-            || self.sticks.visible.is_some()
-            || self.ellipsoids.visible.is_some()
-            || self.cones.visible.is_some()
-            || !self.cut.is_empty()
+        self.camera_visible.is_some() || self.others.any_hidden() || !self.cut.is_empty()
     }
 
     /// Returns whether any body is translucent.
@@ -342,9 +318,7 @@ impl World {
             spheres: Spheres::default(),
             appearance: Appearance::NONE,
             bvh: Bvh::default(),
-            sticks: WorldBodies::default(),
-            ellipsoids: WorldBodies::default(),
-            cones: WorldBodies::default(),
+            others: OtherBodies::default(),
             scene_bodies: BodyRows::default(),
             cut: Cut::default(),
             camera_visible: None,
@@ -397,8 +371,8 @@ impl World {
         !self.caustic_casters.is_empty() || (mirrors && self.lights.samples_mirrored_light())
     }
 
-    /// Returns the number of what is hit: of spheres, after them sticks, then ellipsoids, then cones, in the scene's order; other
-    /// hits are unchanged.
+    /// Returns the number of what is hit: of spheres, after them of all other kinds ([`BodyKind::ALL`]), in the scene's order; other hits are
+    /// unchanged.
     pub fn id_of(&self, hit: u32) -> u32 {
         let given = self.omitted();
         let spheres = self.spheres.len() as u64 + given.cut_away + given.vanished + given.hidden;
@@ -407,7 +381,7 @@ impl World {
         if body.kind == BodyKind::Sphere {
             return id;
         }
-        let before = BodyKind::ALL.into_iter().take_while(|&kind| kind < body.kind);
+        let before = BodyKind::ALL.into_iter().take_while(|&kind| kind < body.kind).skip(1);
         let before: usize = before.map(|kind| self.scene_bodies.count(kind)).sum();
         spheres as u32 + before as u32 + id
     }

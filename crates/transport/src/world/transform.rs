@@ -1,7 +1,7 @@
 //! The transform from the user's coordinates to the world's: a shift and a power of two.
 
 use crate::elementary::{ceil_log2, power_of_two};
-use crate::scene::{Scene, Spheres};
+use crate::scene::{BodyColumns, Rgb, Scene, Spheres};
 use crate::world::fit::Placement;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -34,34 +34,19 @@ pub struct Transform {
 impl Transform {
     /// Of a scene, with all its spheres.
     pub(super) fn of(scene: &Scene, camera: &Placement) -> Self {
-        let Scene { spheres, sticks, ellipsoids, cones, .. } = scene;
-        let shift = if !spheres.is_empty() {
-            middle(spheres)
-        } else if !sticks.is_empty() {
-            middle(&at_points(&sticks.from, &sticks.radius))
-        } else if !ellipsoids.is_empty() {
-            let reach: Vec<f64> = (0..ellipsoids.len()).map(|row| ellipsoids.reach(row)).collect();
-            middle(&at_points(&ellipsoids.center, &reach))
-        } else if !cones.is_empty() {
-            middle(&at_points(&cones.base, &cones.radius))
+        let (spheres, others) = (&scene.spheres, scene.other_bodies());
+        let shift = if spheres.is_empty() {
+            let first = others.into_iter().find(|bodies| !bodies.is_empty());
+            first.map_or(DVec3::ZERO, |bodies| middle(&anchors(bodies)))
         } else {
-            DVec3::ZERO
+            middle(spheres)
         };
-        let reach_of = |center: DVec3, radius: f64| (center - shift).abs().max_element() + radius;
+        let reach_of =
+            |(center, radius): (DVec3, f64)| (center - shift).abs().max_element() + radius;
         let reach = (0..spheres.len())
-            .map(|i| reach_of(center(spheres, i), spheres.radius[i]))
+            .map(|row| reach_of((spheres.center(row), spheres.radius[row])))
             .fold(0.0, f64::max);
-        let ends = sticks.from.iter().chain(&sticks.to);
-        let radii = sticks.radius.iter().chain(&sticks.radius);
-        let reach =
-            ends.zip(radii).map(|(&end, &radius)| reach_of(end, radius)).fold(reach, f64::max);
-        let reach = (0..ellipsoids.len())
-            .map(|row| reach_of(ellipsoids.center[row], ellipsoids.reach(row)))
-            .fold(reach, f64::max);
-        let reach = (0..cones.len())
-            .flat_map(|row| cones.hull(row))
-            .map(|(center, radius)| reach_of(center, radius))
-            .fold(reach, f64::max);
+        let reach = scene.other_hulls().map(reach_of).fold(reach, f64::max);
         Self { shift, scale: 1.0, reach }.with_camera(camera)
     }
 
@@ -105,15 +90,13 @@ impl Transform {
     }
 }
 
-/// Returns spheres about points.
-fn at_points(points: &[DVec3], radius: &[f64]) -> Spheres {
-    let column = |axis: usize| points.iter().map(|point| point[axis]).collect();
-    let radius = radius.to_vec();
-    Spheres { x: column(0), y: column(1), z: column(2), radius, ..Spheres::default() }
-}
-
-fn center(spheres: &Spheres, i: usize) -> DVec3 {
-    DVec3::new(spheres.x[i], spheres.y[i], spheres.z[i])
+/// Returns spheres that stand for bodies.
+fn anchors(bodies: &dyn BodyColumns) -> Spheres {
+    let mut spheres = Spheres::default();
+    for (center, radius) in (0..bodies.len()).map(|row| bodies.anchor(row)) {
+        spheres.push(center, radius, 0, Rgb::ONE);
+    }
+    spheres
 }
 
 /// Returns the median center, rounded to a multiple of a power of two not below the median distance

@@ -2,7 +2,8 @@
 //! usually a mistake.
 
 use super::World;
-use crate::body_tree::Shape as _;
+use crate::body_rows::{BodyKind, BodyRow};
+use crate::body_tree::Sphere;
 use crate::film::Region;
 use crate::shade::MaterialKind;
 use glam::DVec2;
@@ -59,25 +60,20 @@ impl World {
         }
     }
 
-    /// Returns whether an end of a stick, or the surroundings of an ellipsoid or a cone, are in a region of the picture.
+    /// Returns whether the surroundings of a body that is no sphere are in a region of the picture.
     fn other_bodies_in_view(&self, region: Region) -> bool {
         let low = DVec2::new(f64::from(region.x), f64::from(region.y));
         let high = low + DVec2::new(f64::from(region.width), f64::from(region.height));
-        let in_view = |sphere| self.camera.coverage(sphere, low, high) > 0.0;
-        let sticks = self.sticks.seen();
-        let stick_in_view = |row: usize| {
-            let stick = sticks.body(row);
-            stick.ends.iter().any(|&end| in_view((end, stick.radius)))
+        let trees = self.visible_trees();
+        let in_view = |body: BodyRow| {
+            trees.around(body).any(|Sphere { center, radius }| {
+                self.camera.coverage((center, radius), low, high) > 0.0
+            })
         };
-        let box_in_view = |[least, most]: [glam::DVec3; 2]| {
-            in_view((least.midpoint(most), (most - least).max_element() / 2.0))
-        };
-        let (ellipsoids, cones) = (self.ellipsoids.seen(), self.cones.seen());
-        let ellipsoid_in_view = |row: usize| box_in_view(ellipsoids.body(row).extent());
-        let cone_in_view = |row: usize| box_in_view(cones.body(row).extent());
-        (0..sticks.len()).into_par_iter().any(stick_in_view)
-            || (0..ellipsoids.len()).into_par_iter().any(ellipsoid_in_view)
-            || (0..cones.len()).into_par_iter().any(cone_in_view)
+        BodyKind::ALL.into_iter().skip(1).any(|kind| {
+            let rows = (0..trees.rows().count(kind)).into_par_iter();
+            rows.any(|row| in_view(BodyRow::new(kind, row)))
+        })
     }
 
     /// Returns the number of spheres whose centers are outside of the picture.

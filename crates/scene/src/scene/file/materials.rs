@@ -11,7 +11,7 @@ pub(super) const DEFAULT: &str = "default";
 
 /// The materials of a scene that is being read, with an index by name.
 #[derive(Default)]
-pub(super) struct Materials {
+pub(in crate::scene) struct Materials {
     rows: Vec<NamedMaterial>,
     row_of: HashMap<String, u32>,
 }
@@ -79,35 +79,40 @@ pub(super) fn read_ground(
 ) -> Result<Option<Ground>, FileError> {
     let Some(block) = root.block(Schema::of::<GroundKeys>())? else { return Ok(None) };
     let GroundKeys { mut ground, .. } = block.read()?;
-    ground.material = row(&block, materials)?;
-    let unsupported = match materials.rows[ground.material as usize].material {
-        Material::Dielectric { .. } => Some("a dielectric"),
-        Material::Emitter { .. } => Some("an emitter"),
-        Material::Translucent { .. } => Some("translucent"),
-        _ => None,
-    };
-    if let Some(kind) = unsupported {
-        let error = block.error_at("material", &format!("the ground cannot be {kind}"));
-        return Err(error.with_help("name a material of another kind, or use a sphere"));
-    }
+    let refused = ["a dielectric", "an emitter", "translucent"];
+    ground.material = row_but(&block, materials, &refused, ["the ground", "a sphere"])?;
     Ok(Some(ground))
 }
 
 /// Returns the row of the material that the section of `body` names, neither glass nor an emitter,
 /// which only spheres can be.
-pub(super) fn solid_row(
+pub(in crate::scene) fn solid_row(
     block: &Block,
     materials: &mut Materials,
     body: &str,
+) -> Result<u32, FileError> {
+    row_but(block, materials, &["a dielectric", "an emitter"], [body, "spheres"])
+}
+
+/// Returns the row of the material that the section of a body names; some it cannot have, and others can.
+fn row_but(
+    block: &Block,
+    materials: &mut Materials,
+    refused: &[&str],
+    [body, others]: [&str; 2],
 ) -> Result<u32, FileError> {
     let row = row(block, materials)?;
     let kind = match materials.rows[row as usize].material {
         Material::Dielectric { .. } => "a dielectric",
         Material::Emitter { .. } => "an emitter",
+        Material::Translucent { .. } => "translucent",
         _ => return Ok(row),
     };
+    if !refused.contains(&kind) {
+        return Ok(row);
+    }
     let error = block.error_at("material", &format!("{body} cannot be {kind}"));
-    Err(error.with_help("name a material of another kind, or use spheres"))
+    Err(error.with_help(format!("name a material of another kind, or use {others}")))
 }
 
 /// Returns the row of the material that the section names, or of the default material.

@@ -6,15 +6,16 @@
 //! `scenes/README.md` describes every key.
 
 pub(in crate::scene) mod block;
-mod bodies;
 mod environment;
 mod materials;
 mod render;
 mod spheres;
 pub(in crate::scene) mod value;
 
-use self::block::{Block, Source};
-use self::materials::Materials;
+pub(in crate::scene) use block::Block;
+pub(in crate::scene) use materials::{Materials, solid_row};
+
+use self::block::Source;
 use super::keys::{EnvironmentKeys, SECTIONS, Schema};
 use super::particles::{self, Orientation, Particles, ReadOptions, TypeMaterial};
 use super::{
@@ -213,7 +214,9 @@ fn read(source: &Source, root: &Block) -> Result<Scene, FileError> {
     };
     let mut materials = materials::read(root)?;
     spheres::read(source, root, &mut scene, &mut materials)?;
-    bodies::read(root, &mut scene, &mut materials)?;
+    for bodies in scene.file_bodies_mut() {
+        bodies.read(root, &mut materials)?;
+    }
     scene.ground = materials::read_ground(root, &mut materials)?;
     scene.materials = materials.into_rows();
     let environment = root.block(Schema::of::<EnvironmentKeys>())?;

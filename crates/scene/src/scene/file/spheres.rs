@@ -3,9 +3,9 @@
 use super::block::{Block, Source};
 use super::materials::{self, Materials};
 use crate::memory;
-use crate::scene::Footprint;
 use crate::scene::keys::{FileKeys, GenerateKeys, Schema, SphereKeys};
 use crate::scene::particles::{self, Radii, ReadOptions};
+use crate::scene::{Ellipsoids, Footprint};
 use crate::scene::{FileError, Scene, Spheres};
 use std::path::PathBuf;
 
@@ -79,8 +79,8 @@ fn read_file(
     };
     let path = existing(source, block, "path", &path)?;
     let mut particles = particles::read(&path, &options)?;
-    let ellipsoids = particles.shapes.semi_axes.len() as u64;
-    let added = Footprint { ellipsoids, ..Footprint::of_columns(&particles.spheres, &[]) };
+    let others = Ellipsoids::BYTES.of(particles.shapes.semi_axes.len());
+    let added = Footprint { others, ..Footprint::of_columns(&particles.spheres, &[]) };
     check_capacity(&scene.spheres, &added, added.scene(), materials)
         .map_err(|message| block.error_at("path", &message))?;
     let mut rows = Vec::new();
@@ -94,9 +94,8 @@ fn read_file(
             })?
         });
     }
-    let mut ellipsoids =
-        particles.take_ellipsoids(materials.rows(), &rows, &path.to_string_lossy());
-    scene.ellipsoids.append(&mut ellipsoids);
+    let ellipsoids = particles.take_ellipsoids(materials.rows(), &rows, &path.to_string_lossy());
+    scene.ellipsoids.append(ellipsoids, |row| row);
     scene.spheres.append(particles.spheres, &rows);
     scene.warnings.extend(particles.warnings);
     Ok(())

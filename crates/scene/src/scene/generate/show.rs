@@ -2,8 +2,8 @@
 
 use super::{Field, Group};
 use crate::scene::{
-    Annotations, Camera, Cones, Ellipsoids, Environment, EnvironmentMap, Ground, Insets, Lens,
-    Light, Look, Material, NamedMaterial, Pose, Projection, Rgb, Scene, Settings, Sticks, Tone,
+    Camera, Environment, EnvironmentMap, Ground, Insets, Lens, Light, Material, NamedMaterial,
+    Pose, Projection, Rgb, Scene, Settings, Tone,
 };
 use glam::DVec3;
 
@@ -26,14 +26,8 @@ pub fn default_scene(seed: u64) -> Scene {
     Scene {
         title: "A random field of spheres".to_owned(),
         spheres,
-        sticks: Sticks::default(),
-        ellipsoids: Ellipsoids::default(),
-        cones: Cones::default(),
         materials,
         ground: Some(ground),
-        slices: Vec::new(),
-        look: Look::default(),
-        annotations: Annotations::default(),
         lights: vec![sun()],
         environment: sky(),
         camera: camera(),
@@ -45,7 +39,7 @@ pub fn default_scene(seed: u64) -> Scene {
             tone: Tone::Filmic,
             ..Settings::default()
         },
-        warnings: Vec::new(),
+        ..Scene::default()
     }
 }
 

@@ -166,7 +166,7 @@ impl Kind<String> for Str {
 }
 
 /// Three coordinates.
-pub(super) enum Triple {
+pub(in crate::scene) enum Triple {
     Point,
     /// A vector of any length but 0, which is kept.
     Vector,
@@ -217,7 +217,7 @@ fn unit(vector: DVec3) -> DVec3 {
 }
 
 /// A quaternion of any length but 0, its real part first.
-pub(super) struct Quaternion;
+pub(in crate::scene) struct Quaternion;
 
 impl Kind<DQuat> for Quaternion {
     fn read(&self, value: &Value) -> Result<DQuat, FileError> {
@@ -273,7 +273,7 @@ pub(super) fn name_of<T>(kinds: &[(&'static str, T)], value: &T) -> &'static str
 }
 
 /// Several values of a kind.
-pub(super) struct List<K>(pub(super) K);
+pub(in crate::scene) struct List<K>(pub(in crate::scene) K);
 
 impl<T: Debug, const N: usize, K: Kind<T>> Kind<[T; N]> for List<K> {
     fn read(&self, value: &Value) -> Result<[T; N], FileError> {
@@ -299,7 +299,7 @@ impl<T: Debug, const N: usize, K: Kind<T>> Kind<[T; N]> for List<K> {
 }
 
 /// A value, or none: then there is no key.
-pub(super) struct Optional<K>(pub(super) K);
+pub(in crate::scene) struct Optional<K>(pub(in crate::scene) K);
 
 impl<T: Debug, K: Kind<T>> Kind<Option<T>> for Optional<K> {
     fn read(&self, value: &Value) -> Result<Option<T>, FileError> {

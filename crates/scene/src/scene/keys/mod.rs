@@ -8,11 +8,11 @@ mod kinds;
 mod schema;
 mod table;
 
-pub(in crate::scene) use kinds::Kind;
+pub(in crate::scene) use kinds::Triple::Point;
+pub(in crate::scene) use kinds::{Kind, List, Optional, Quaternion};
 pub(in crate::scene) use schema::Schema;
 pub(in crate::scene) use table::{
-    ConeKeys, EllipsoidKeys, EnvironmentKeys, FileKeys, GenerateKeys, GroundKeys, SECTIONS,
-    SphereKeys, StickKeys,
+    EnvironmentKeys, FileKeys, GenerateKeys, GroundKeys, RADIUS, SECTIONS, SphereKeys, color, solid,
 };
 
 use super::write::sections::quoted;
@@ -44,18 +44,18 @@ pub(in crate::scene) struct Key {
 }
 
 /// Returns an optional key.
-const fn key(name: &'static str, help: &'static str) -> Key {
+pub(in crate::scene) const fn key(name: &'static str, help: &'static str) -> Key {
     Key { name, help, example: None, default: None }
 }
 
 impl Key {
     /// Makes the key a required one; `example` is what to write if it is missing.
-    const fn required(self, example: &'static str) -> Self {
+    pub(in crate::scene) const fn required(self, example: &'static str) -> Self {
         Self { example: Some(example), ..self }
     }
 
     /// Says the default in words.
-    const fn or(self, default: &'static str) -> Self {
+    pub(in crate::scene) const fn or(self, default: &'static str) -> Self {
         Self { default: Some(default), ..self }
     }
 }

@@ -3,21 +3,22 @@
 
 use super::kinds::Str::{Name, Path, Text};
 use super::kinds::Triple::{Direction, Point, Vector};
-use super::kinds::{Backdrop, Entries, Flag, List, Optional, Quaternion, Whole, Word};
+use super::kinds::{Backdrop, Entries, Flag, List, Optional, Whole, Word};
 use super::{Schema, Section, Visitor, key};
 use crate::color::{Map, Range, Scale, Spacing};
 use crate::image::Image;
+use crate::scene::bodies::{ConeKeys, EllipsoidKeys, StickKeys};
 use crate::scene::generate::{Field, Generator, Grid, Lattice, Sphereflake, Volume, Weekend};
 use crate::scene::particles::{Cell, Format};
 use crate::scene::{
-    Anchor, AxisTripod, BRIGHTEST, Camera, ColorBar, ColorLegend, ConductorFresnel, Cones,
-    Ellipsoids, Environment, EnvironmentMap, Ground, Insets, Label, Lens, Lettering, Light, Look,
-    Material, Pose, Projection, Rgb, ScaleBar, Slice, SliceMode,
+    Anchor, AxisTripod, BRIGHTEST, Camera, ColorBar, ColorLegend, ConductorFresnel, Environment,
+    EnvironmentMap, Ground, Insets, Label, Lens, Lettering, Light, Look, Material, Pose,
+    Projection, Rgb, ScaleBar, Slice, SliceMode,
 };
 use crate::settings::Limits::{
     self, AboveTo, Any, Below, Between, NotNegative, Positive, Share, Within,
 };
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use std::sync::Arc;
 
 /// Returns the schema of a section.
@@ -516,11 +517,13 @@ fn conductor<V: Visitor>(keys: &mut V, fresnel: &mut ConductorFresnel, help: &'s
     }
 }
 
-/// Values of the keys of bodies that name a material.
-const SOLID: &str = "material, not glass and not an emitter";
+/// Visits the key of the material of a body that is no sphere.
+pub(in crate::scene) fn solid<V: Visitor>(keys: &mut V, name: &mut Option<String>) {
+    material(keys, name, "material, not glass and not an emitter");
+}
 
 /// Visits the key of a body's color.
-fn color<V: Visitor>(keys: &mut V, color: &mut Rgb) {
+pub(in crate::scene) fn color<V: Visitor>(keys: &mut V, color: &mut Rgb) {
     keys.visit(key("color", "factor for the material's color"), Share, color);
 }
 
@@ -534,7 +537,7 @@ pub(in crate::scene) struct SphereKeys {
 }
 
 /// The advice for a missing radius.
-const RADIUS: &str = "radius = a number greater than 0";
+pub(in crate::scene) const RADIUS: &str = "radius = a number greater than 0";
 
 impl Section for SphereKeys {
     const NAME: &'static str = "[[sphere]]";
@@ -546,116 +549,6 @@ impl Section for SphereKeys {
         keys.visit(key("center", "center").required("center = [x, y, z]"), Point, center);
         keys.visit(key("radius", "radius").required(RADIUS), Positive, radius);
         self::material(keys, material, "material");
-        self::color(keys, color);
-    }
-}
-
-/// `[[stick]]`.
-#[derive(Clone)]
-pub(in crate::scene) struct StickKeys {
-    pub(in crate::scene) ends: [DVec3; 2],
-    pub(in crate::scene) radius: f64,
-    pub(in crate::scene) material: Option<String>,
-    pub(in crate::scene) color: Option<Rgb>,
-    pub(in crate::scene) colors: Option<[Rgb; 2]>,
-}
-
-impl Section for StickKeys {
-    const NAME: &'static str = "[[stick]]";
-    const EMPTY: fn() -> Self = || {
-        let ends = [DVec3::ZERO, DVec3::Y];
-        Self { ends, radius: 1.0, material: None, color: None, colors: None }
-    };
-
-    fn visit<V: Visitor>(&mut self, keys: &mut V) {
-        let Self { ends: [from, to], radius, material, color, colors } = self;
-        keys.visit(key("from", "one end of the segment").required("from = [x, y, z]"), Point, from);
-        keys.visit(key("to", "the other end of the segment").required("to = [x, y, z]"), Point, to);
-        keys.visit(key("radius", "radius").required(RADIUS), Positive, radius);
-        self::material(keys, material, SOLID);
-        keys.visit(key("color", "factor for the material's color").or("1"), Optional(Share), color);
-        let help = "factors for the half at `from` and for that at `to`, in place of `color`";
-        keys.visit(key("colors", help), Optional(List(Share)), colors);
-        if colors.is_some() {
-            keys.forbid(&["color"], "colors", "it gives the colors of both halves");
-        }
-    }
-}
-
-/// `[[ellipsoid]]`.
-#[derive(Clone)]
-pub(in crate::scene) struct EllipsoidKeys {
-    pub(in crate::scene) center: DVec3,
-    pub(in crate::scene) semi_axes: [f64; 3],
-    pub(in crate::scene) orientation: DQuat,
-    pub(in crate::scene) material: Option<String>,
-    pub(in crate::scene) color: Rgb,
-}
-
-impl Section for EllipsoidKeys {
-    const NAME: &'static str = "[[ellipsoid]]";
-    const EMPTY: fn() -> Self = || {
-        let (center, orientation) = (DVec3::ZERO, DQuat::IDENTITY);
-        Self { center, semi_axes: [1.0; 3], orientation, material: None, color: Rgb::ONE }
-    };
-
-    fn visit<V: Visitor>(&mut self, keys: &mut V) {
-        let Self { center, semi_axes, orientation, material, color } = self;
-        keys.visit(key("center", "center").required("center = [x, y, z]"), Point, center);
-        let example = "semi_axes = three numbers greater than 0";
-        let help = "half of the lengths along x, y and z, before the rotation, none more than 16384 \
-                    times another";
-        keys.visit(key("semi_axes", help).required(example), List(Positive), semi_axes);
-        let axes = DVec3::from(*semi_axes);
-        let (ratio, most) = (axes.max_element() / axes.min_element(), Ellipsoids::MAX_RATIO);
-        if ratio > most {
-            let message = format!(
-                "the longest semi-axis is {ratio} times the shortest, but at most {most} fit"
-            );
-            keys.refuse(&["semi_axes"], &message, None);
-        }
-        keys.visit(key("orientation", "rotation"), Quaternion, orientation);
-        self::material(keys, material, SOLID);
-        self::color(keys, color);
-    }
-}
-
-/// `[[cone]]`.
-#[derive(Clone)]
-pub(in crate::scene) struct ConeKeys {
-    pub(in crate::scene) apex: DVec3,
-    pub(in crate::scene) base: DVec3,
-    pub(in crate::scene) radius: f64,
-    pub(in crate::scene) material: Option<String>,
-    pub(in crate::scene) color: Rgb,
-}
-
-impl Section for ConeKeys {
-    const NAME: &'static str = "[[cone]]";
-    const EMPTY: fn() -> Self = || {
-        let (apex, base) = (DVec3::Y, DVec3::ZERO);
-        Self { apex, base, radius: 1.0, material: None, color: Rgb::ONE }
-    };
-
-    fn visit<V: Visitor>(&mut self, keys: &mut V) {
-        let Self { apex, base, radius, material, color } = self;
-        keys.visit(key("apex", "the tip").required("apex = [x, y, z]"), Point, apex);
-        let help = "the center of the base, not the apex";
-        keys.visit(key("base", help).required("base = [x, y, z]"), Point, base);
-        if apex == base {
-            keys.refuse(&["base"], "the base is at the apex", Some("move one of them"));
-        }
-        let help = "radius of the base, not more than 16384 times the height, nor less than it \
-                    divided by that";
-        keys.visit(key("radius", help).required(RADIUS), Positive, radius);
-        let (ratio, most) = (Cones::ratio_of(*apex, *base, *radius), Cones::MAX_RATIO);
-        if ratio > most {
-            let message = format!(
-                "of the height and the radius one is {ratio} times the other, but at most {most} fit"
-            );
-            keys.refuse(&["radius"], &message, None);
-        }
-        self::material(keys, material, SOLID);
         self::color(keys, color);
     }
 }

@@ -4,7 +4,7 @@ mod text;
 
 pub use text::SlicePlane;
 
-use super::Scene;
+use super::{BodyColumns, Scene};
 use glam::DVec3;
 
 /// A half space that is cut away: the points `p` with `normal . p > distance`.
@@ -75,7 +75,7 @@ impl Scene {
         self.slices.iter().any(|slice| slice.drops(center, radius))
     }
 
-    /// Returns the normals of the slices that cut or remove any sphere, ellipsoid or cone, toward what is cut away.
+    /// Returns the normals of the slices that cut or remove any sphere or any body that stands alone, toward what is cut away.
     pub fn cut_normals(&self) -> Vec<DVec3> {
         let cuts = |slice: &&Slice| {
             let spheres = &self.spheres;
@@ -84,41 +84,37 @@ impl Scene {
                 SliceMode::Remove | SliceMode::Hide => 0.0,
             };
             let cut = |row: usize| slice.depth(spheres.center(row)) + reach(row) > 0.0;
-            let others = &self.ellipsoids;
-            let extent = |row: usize| match slice.mode {
-                SliceMode::Caps => others.extent(row, slice.normal),
-                SliceMode::Remove | SliceMode::Hide => 0.0,
+            let cut_any = |bodies: &dyn BodyColumns| {
+                (0..bodies.len()).any(|row| slice.cuts_body(bodies, row))
             };
-            let cut_other = |row: usize| slice.depth(others.center[row]) + extent(row) > 0.0;
-            let cones = &self.cones;
-            let cut_cone = |row: usize| match slice.mode {
-                SliceMode::Caps => cones.range(row, slice.normal)[1] > slice.distance,
-                SliceMode::Remove | SliceMode::Hide => slice.depth(cones.middle(row)) > 0.0,
-            };
-            (0..spheres.len()).any(cut)
-                || (0..others.len()).any(cut_other)
-                || (0..cones.len()).any(cut_cone)
+            (0..spheres.len()).any(cut) || self.standing_bodies().any(cut_any)
         };
         self.slices.iter().filter(cuts).map(|slice| slice.normal).collect()
     }
 
-    /// The box of all spheres, ellipsoids and cones: lower and upper corner; `None` if there are none.
+    /// The box of all spheres and all bodies that stand alone: lower and upper corner; `None` if there are none.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
-        let Self { spheres, ellipsoids, cones, .. } = self;
-        let own =
-            (0..spheres.len()).map(|row| (spheres.center(row), DVec3::splat(spheres.radius[row])));
-        let others = (0..ellipsoids.len()).map(|row| {
-            let extent = DVec3::AXES.map(|axis| ellipsoids.extent(row, axis));
-            (ellipsoids.center[row], DVec3::from(extent))
+        let spheres = &self.spheres;
+        let own = (0..spheres.len()).map(|row| {
+            let (center, radius) = (spheres.center(row), DVec3::splat(spheres.radius[row]));
+            [center - radius, center + radius]
         });
-        let boxes = own.chain(others).map(|(center, extent)| [center - extent, center + extent]);
-        let of_cones = (0..cones.len()).map(|row| {
-            let ranges = DVec3::AXES.map(|axis| cones.range(row, axis));
-            [0, 1].map(|end| DVec3::from(ranges.map(|range| range[end])))
-        });
-        boxes
-            .chain(of_cones)
+        let across =
+            DVec3::AXES.map(|normal| Slice { normal, distance: 0.0, mode: SliceMode::default() });
+        let boxes = |bodies: &'_ dyn BodyColumns| {
+            let ends = |row: usize| across.map(|slice| bodies.depths(row, &slice));
+            let sides = |row: usize| {
+                let ends = ends(row);
+                [0, 1].map(|end| DVec3::from(ends.map(|range| range[end])))
+            };
+            (0..bodies.len()).map(sides).collect::<Vec<_>>()
+        };
+        own.chain(self.standing_bodies().flat_map(boxes))
             .reduce(|[low, high], [lower, upper]| [low.min(lower), high.max(upper)])
+    }
+
+    fn standing_bodies(&self) -> impl Iterator<Item = &dyn BodyColumns> {
+        self.other_bodies().into_iter().filter(|bodies| bodies.stand_alone())
     }
 
     /// Drops the spheres that the slices remove, so that their memory is freed and cameras frame the

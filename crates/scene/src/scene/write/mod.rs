@@ -110,9 +110,8 @@ fn check(scene: &Scene) -> Result<(), String> {
     let spheres = &scene.spheres;
     let used = (0..spheres.len()).map(|sphere| spheres.material_of(sphere));
     let used = used.chain(scene.ground.iter().map(|ground| ground.material));
-    let used = used.chain(scene.sticks.material.iter().copied());
-    let used = used.chain(scene.ellipsoids.material.iter().copied());
-    let used = used.chain(scene.cones.material.iter().copied());
+    let others = scene.other_bodies().into_iter();
+    let used = used.chain(others.flat_map(|bodies| bodies.materials().iter().copied()));
     match used.max() {
         Some(row) if row as usize >= scene.materials.len() => {
             Err(format!("row {row} of the materials is used, but not there"))
@@ -153,9 +152,7 @@ fn document(scene: &Scene, header: &Header, sky: &str) -> String {
     text.extend(scene.slices.iter().map(section_text));
     text.extend(scene.lights.iter().map(section_text));
     let name = |row: u32| quoted(&scene.materials[row as usize].name);
-    text += &sections::sticks(&scene.sticks, name);
-    text += &sections::ellipsoids(&scene.ellipsoids, name);
-    text += &sections::cones(&scene.cones, name);
+    text.extend(scene.file_bodies().map(|bodies| sections::bodies(bodies, name)));
     text
 }
 

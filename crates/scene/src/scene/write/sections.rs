@@ -1,7 +1,8 @@
 //! The sections of a scene file as text.
 
-use crate::scene::keys::{ConeKeys, EllipsoidKeys, GroundKeys, StickKeys, section_text};
-use crate::scene::{Annotations, Cones, Ellipsoids, Lettering, Look, Scene, Sticks};
+use crate::scene::bodies::FileBodies;
+use crate::scene::keys::{GroundKeys, section_text};
+use crate::scene::{Annotations, Lettering, Look, Scene};
 use crate::settings::{SETTINGS, Setting, Settings, Value};
 
 pub(super) fn render(settings: &Settings) -> String {
@@ -60,43 +61,11 @@ pub(in crate::scene) fn quoted(text: &str) -> String {
     format!("\"{}\"", text.chars().map(escape).collect::<String>())
 }
 
-/// The sections of the sticks; `material` gives the name of a row of the materials.
-pub(in crate::scene) fn sticks(sticks: &Sticks, material: impl Fn(u32) -> String) -> String {
-    let section = |row: usize| {
-        let (radius, material) = (sticks.radius[row], Some(material(sticks.material[row])));
-        let (ends, colors) = (sticks.ends(row), Some(sticks.colors[row]));
-        section_text(&StickKeys { ends, radius, material, color: None, colors })
-    };
-    (0..sticks.len()).map(section).collect()
-}
-
-/// The sections of the ellipsoids, likewise.
-pub(in crate::scene) fn ellipsoids(
-    ellipsoids: &Ellipsoids,
+/// The sections of bodies; `material` gives the name of a row of the materials.
+pub(in crate::scene) fn bodies(
+    bodies: &dyn FileBodies,
     material: impl Fn(u32) -> String,
 ) -> String {
-    let section = |row: usize| {
-        section_text(&EllipsoidKeys {
-            center: ellipsoids.center[row],
-            semi_axes: ellipsoids.semi_axes[row].to_array(),
-            orientation: ellipsoids.orientation[row],
-            material: Some(material(ellipsoids.material[row])),
-            color: ellipsoids.color[row],
-        })
-    };
-    (0..ellipsoids.len()).map(section).collect()
-}
-
-/// The sections of the cones, likewise.
-pub(in crate::scene) fn cones(cones: &Cones, material: impl Fn(u32) -> String) -> String {
-    let section = |row: usize| {
-        section_text(&ConeKeys {
-            apex: cones.apex[row],
-            base: cones.base[row],
-            radius: cones.radius[row],
-            material: Some(material(cones.material[row])),
-            color: cones.color[row],
-        })
-    };
-    (0..cones.len()).map(section).collect()
+    let materials = bodies.materials().iter().enumerate();
+    materials.map(|(row, &name)| bodies.section(row, material(name))).collect()
 }

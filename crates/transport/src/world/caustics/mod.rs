@@ -241,7 +241,7 @@ fn sampled_kinds(world: &World) -> &'static [MaterialKind] {
     const KINDS: [MaterialKind; 3] =
         [MaterialKind::Conductor, MaterialKind::Dielectric, MaterialKind::Plastic];
     let count = |kinds: &&[MaterialKind]| {
-        let each = kinds.iter().map(|&kind| world.features.spheres_by_kind[kind as usize]);
+        let each = kinds.iter().map(|&kind| world.features.spheres_of(kind));
         (1..=MAX_CASTERS).contains(&each.sum())
     };
     [&KINDS[..], &KINDS[..2]].into_iter().find(count).unwrap_or_default()
@@ -263,7 +263,7 @@ fn casters(world: &World, kinds: &[MaterialKind]) -> Vec<Caster> {
     let rows: Vec<u32> = rows.filter(smooth).collect();
     let mut rows = world.spheres.first_of_equals(rows.into_iter());
     rows.retain(smooth);
-    if world.features.spheres_by_kind[MaterialKind::Dielectric as usize] > 0 {
+    if world.features.spheres_of(MaterialKind::Dielectric) > 0 {
         let neighborhoods = Neighborhoods::build(world);
         let stands_alone = |row: &u32| {
             world.material(*row).kind() != MaterialKind::Dielectric
