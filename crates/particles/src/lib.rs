@@ -61,6 +61,7 @@ mod lammps;
 mod line;
 mod lines;
 mod memory;
+mod mesh;
 mod mol2;
 mod molfile;
 mod naming;
@@ -130,6 +131,7 @@ pub mod internals {
     }
     pub use crate::categories::retain;
     pub use crate::error::{clipped, listed};
+    pub use crate::mesh::{Mesh, read_mesh};
     /// Available memory.
     pub mod memory {
         pub use crate::memory::*;

@@ -33,28 +33,28 @@ impl Ply {
 }
 
 /// The header.
-struct Header {
+pub(crate) struct Header {
     /// Byte order; `None` for text.
-    order: Option<Order>,
-    elements: Vec<Element>,
+    pub(crate) order: Option<Order>,
+    pub(crate) elements: Vec<Element>,
     title: String,
-    lines: u64,
+    pub(crate) lines: u64,
     /// Offset of the data.
-    end: usize,
+    pub(crate) end: usize,
 }
 
 /// Declaration of an element.
-struct Element {
-    name: String,
-    count: u64,
-    properties: Vec<Property>,
+pub(crate) struct Element {
+    pub(crate) name: String,
+    pub(crate) count: u64,
+    pub(crate) properties: Vec<Property>,
 }
 
-struct Property {
-    name: String,
-    scalar: Scalar,
+pub(crate) struct Property {
+    pub(crate) name: String,
+    pub(crate) scalar: Scalar,
     /// Type of the number of items; `None` unless the property is a list.
-    list: Option<Scalar>,
+    pub(crate) list: Option<Scalar>,
 }
 
 fn scalar(name: &[u8]) -> Option<Scalar> {
@@ -72,7 +72,7 @@ fn scalar(name: &[u8]) -> Option<Scalar> {
 }
 
 impl Header {
-    fn read(path: &Arc<Path>, head: &[u8]) -> Result<Self, FileError> {
+    pub(crate) fn read(path: &Arc<Path>, head: &[u8]) -> Result<Self, FileError> {
         let (order, elements, title) = (None, Vec::new(), String::new());
         let mut header = Self { order, elements, title, lines: 0, end: 0 };
         loop {
@@ -214,10 +214,10 @@ fn text(lines: &mut Lines, vertex: &Element, builder: &mut Builder) -> Result<()
 }
 
 /// Reader of the elements of a binary file.
-struct Binary<'p, R> {
-    reader: R,
-    order: Order,
-    path: &'p Path,
+pub(crate) struct Binary<'p, R> {
+    pub(crate) reader: R,
+    pub(crate) order: Order,
+    pub(crate) path: &'p Path,
 }
 
 impl<R: BufRead> Binary<'_, R> {
@@ -245,7 +245,8 @@ impl<R: BufRead> Binary<'_, R> {
         Ok(())
     }
 
-    fn number(&mut self, scalar: Scalar) -> Result<f64, FileError> {
+    /// Reads a number.
+    pub(crate) fn number(&mut self, scalar: Scalar) -> Result<f64, FileError> {
         let mut bytes = [0; 8];
         let bytes = &mut bytes[..scalar.size()];
         self.reader.read_exact(bytes).map_err(|error| self.failed(&error))?;
