@@ -6,6 +6,8 @@ import difflib
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
+from .sections import Sections
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
@@ -20,7 +22,6 @@ if TYPE_CHECKING:
         Position,
         Preset,
         Render,
-        Sections,
         Side,
         SliceMode,
         TypeStyle,
@@ -53,6 +54,7 @@ if TYPE_CHECKING:
         label_of_values: str
         model: Model
         bonds: str
+        triangles: Any
         bond_radius: float
         opacity: float | str
         translucent: str
@@ -95,10 +97,7 @@ STYLE = frozenset(
 )
 
 #: Sections of scene files; the color bar is one, too, if it is a dict.
-SECTIONS = frozenset(
-    "title render camera look legend axes scale_bar label lettering environment ground slice light material sphere "
-    "stick ellipsoid cone generate file".split()
-)
+SECTIONS = frozenset(Sections.__annotations__)
 
 #: Keys of the section `render`.
 RENDER = frozenset(

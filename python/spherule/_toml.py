@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ._errors import Error
+from .sections import Sections
 
 _ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\r": "\\r", "\t": "\\t", "\b": "\\b", "\f": "\\f"}
 
@@ -59,7 +60,7 @@ def _table(name: str, table: Mapping[str, Any]) -> str:
 
 
 #: Sections of which there may be several.
-LISTS = ("slice", "light", "label", "sphere", "stick", "ellipsoid", "cone", "generate", "file")
+LISTS = frozenset(name for name, kind in Sections.__annotations__.items() if "Sequence[" in str(kind))
 
 
 def document(sections: Mapping[str, Any]) -> tuple[str, dict[str, list[str]]]:

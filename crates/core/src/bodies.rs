@@ -133,14 +133,15 @@ impl<'a> BodyTrees<'a> {
         self.rows().hit(row_at(tree, row, &ray, 0.0))
     }
 
-    /// Returns the point of the surface where a ray hits a body, and the unit normal there; `None` for a sphere.
-    pub fn surface_at(&self, row: BodyRow, ray: &ExactRay, t: f64) -> Option<(DVec3, DVec3)> {
-        with_tree!(self, row.kind, |tree| tree.body(row.row).surface_at(ray, t))
+    /// Returns the point of the surface where a ray hits a body, rounded, and the unit normal there; `None` for a sphere.
+    pub fn surface_at(&self, row: BodyRow, ray: &ExactRay, t: f64) -> Option<(Vec3, DVec3)> {
+        with_tree!(self, row.kind, |tree| rounded_surface(&tree.body(row.row), ray, t))
     }
 
-    /// Returns the outward unit normal at a point of a body's surface; `None` for a sphere.
-    pub fn normal_at(&self, row: BodyRow, point: DVec3) -> Option<DVec3> {
-        with_tree!(self, row.kind, |tree| tree.body(row.row).normal_at(point))
+    /// Returns the outward unit normal at a point of a body's surface, or of a surface without inside that on the side of a direction; `None`
+    /// for a sphere.
+    pub fn normal_at(&self, row: BodyRow, point: DVec3, toward: DVec3) -> Option<DVec3> {
+        with_tree!(self, row.kind, |tree| normal_toward(&tree.body(row.row), point, toward))
     }
 
     /// Returns the distance at which a ray that starts on or in a body leaves it; `None` for a sphere.
@@ -178,6 +179,31 @@ impl<'a> BodyTrees<'a> {
     pub(crate) fn sphere_of(&self, row: BodyRow, part: Part) -> Option<Sphere> {
         with_body!(self, row, |body| body.sphere_of(part))?
     }
+}
+
+/// The point and the normal where a ray hits a body. That of a surface without inside is rounded to the side of the normal: rays that leave it
+/// there do not hit what continues the surface.
+fn rounded_surface<S: Shape>(body: &S, ray: &ExactRay, t: f64) -> (Vec3, DVec3) {
+    let (point, normal) = body.surface_at(ray, t);
+    let rounded = point.as_vec3();
+    if S::HAS_INSIDE {
+        return (rounded, normal);
+    }
+    let beside = |axis: usize| {
+        let (own, side) = (rounded[axis], normal[axis]);
+        let off = f64::from(own) - point[axis];
+        match off * side {
+            0.0.. => own,
+            _ if side > 0.0 => own.next_up(),
+            _ => own.next_down(),
+        }
+    };
+    (Vec3::from([0, 1, 2].map(beside)), normal)
+}
+
+fn normal_toward<S: Shape>(body: &S, point: DVec3, toward: DVec3) -> DVec3 {
+    let normal = body.normal_at(point);
+    if !S::HAS_INSIDE && normal.dot(toward) < 0.0 { -normal } else { normal }
 }
 
 /// The body of a hit on a row of a kind.
@@ -307,7 +333,7 @@ struct RaySearch<'a, S: Shape, const ANY: bool> {
     tree: &'a BodyTree<S>,
     filter: FilterRay,
     ray: &'a ExactRay,
-    /// The row that the ray starts on: it is convex, and never hit from outside.
+    /// The row that the ray starts on: it is convex or flat, and never hit from outside.
     own: Option<usize>,
     nearest: Nearest,
     /// The row that is hit.

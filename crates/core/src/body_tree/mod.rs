@@ -38,6 +38,9 @@ pub trait Shape: Copy + Debug + PartialEq {
     /// A line and a body, in double precision with bounds.
     type Line: Line;
 
+    /// Returns whether a body has an inside; else it is a surface that is seen from both sides.
+    const HAS_INSIDE: bool = true;
+
     /// A block without bodies: no ray may hit any.
     const EMPTY: Self::Block;
 

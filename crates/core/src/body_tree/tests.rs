@@ -260,9 +260,9 @@ pub(crate) fn rays_from_a_surface_do_not_hit_it_and_leave_at_its_far_side<S: Tes
         }
         // Rounding decides where a ray along a face leaves it.
         let enters_and_leaves = direction.dot(normal).min(-direction.dot(outward)) > 0.01;
-        if enters_and_leaves && body.leaves_clearly(direction) {
+        if !S::HAS_INSIDE || (enters_and_leaves && body.leaves_clearly(direction)) {
             let exit = body.exit_distance(&ray);
-            let off = (exit - chord).abs();
+            let off = (exit - if S::HAS_INSIDE { chord } else { 0.0 }).abs();
             assert!(off <= 1e-6 * chord.max(1e-3), "{exit} {chord} {ray:?} {body:?} {toward}");
             let found = body.normal_at(toward);
             assert!(found.is_normalized() && (found.dot(normal) > 0.999 || body.is_edge(toward)));
@@ -294,7 +294,7 @@ pub(crate) fn points_are_enclosed_by_the_first_body<S: Tested>() {
         assert_eq!(first, expected.first().copied());
         inside += u32::from(first.is_some());
     }
-    assert!(inside > 1000, "{inside}");
+    assert!(inside > 1000 || !S::HAS_INSIDE, "{inside}");
 }
 
 pub(crate) fn boxes_hold_their_bodies_closely<S: Tested>() {

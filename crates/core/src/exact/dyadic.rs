@@ -48,7 +48,7 @@ impl Dyadic {
 
     /// The nearest number of double precision, but for one unit of its last place; infinite or 0
     /// beyond its range.
-    pub(super) fn to_f64(&self) -> f64 {
+    pub(crate) fn to_f64(&self) -> f64 {
         let surplus = self.mantissa.bits().saturating_sub(64);
         let top = &self.mantissa >> surplus;
         let top = i128::try_from(&top).unwrap_or(0) as f64;

@@ -272,7 +272,7 @@ fn near_miss(
 fn mirrored_probability(world: &World, work: &Workspace, row: usize) -> f32 {
     let own = work.rays.own[row];
     let (origin, toward) = (work.rays.origin.row(row), work.rays.direction.row(row));
-    let Some(normal) = world.normal_at(own, origin) else { return 1.0 };
+    let Some(normal) = world.normal_at(own, origin, toward) else { return 1.0 };
     let (id, cosine) = (world.material(own), normal.dot(toward).abs().min(1.0));
     match id.kind() {
         MaterialKind::Dielectric => {

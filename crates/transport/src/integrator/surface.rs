@@ -252,7 +252,7 @@ fn compute_other_body(world: &World, work: &mut Workspace, row: usize) {
     let (ray, t) = (work.rays.exact(row), work.hits.t[row]);
     let Some(body) = world.body(work.hits.sphere[row]) else { return };
     let Some((point, normal)) = world.trees().surface_at(body, &ray, t) else { return };
-    work.surface.point.set(row, point.as_vec3());
+    work.surface.point.set(row, point);
     work.surface.normal.set(row, normal);
 }
 

@@ -386,14 +386,20 @@ impl World {
         spheres as u32 + before as u32 + id
     }
 
-    /// Returns the outward normal of the surface of a hit at a point of it; `None` for a miss.
-    pub(crate) fn normal_at(&self, hit: u32, point: glam::Vec3) -> Option<glam::Vec3> {
+    /// Returns the outward normal of the surface of a hit at a point of it, or of a surface without inside that on the side of a direction;
+    /// `None` for a miss.
+    pub(crate) fn normal_at(
+        &self,
+        hit: u32,
+        point: glam::Vec3,
+        toward: glam::Vec3,
+    ) -> Option<glam::Vec3> {
         match (hit, &self.ground) {
             (GROUND, Some(ground)) => Some(ground.normal.as_vec3()),
             (MISS | GROUND, _) => None,
             _ => {
                 let body = self.body(hit)?;
-                let other = self.trees().normal_at(body, point.as_dvec3());
+                let other = self.trees().normal_at(body, point.as_dvec3(), toward.as_dvec3());
                 let sphere = || (point - self.spheres.center(body.row)).normalize_or_zero();
                 Some(other.map_or_else(sphere, glam::DVec3::as_vec3))
             }

@@ -102,7 +102,7 @@ fn read_file(
 }
 
 /// Returns the path of a file that a key names.
-fn existing(
+pub(super) fn existing(
     source: &Source,
     block: &Block,
     key: &'static str,

@@ -138,7 +138,7 @@ impl Kind<bool> for Flag {
 }
 
 /// A string.
-pub(super) enum Str {
+pub(in crate::scene) enum Str {
     Text,
     /// The path of a file.
     Path,

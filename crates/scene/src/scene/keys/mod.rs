@@ -8,6 +8,7 @@ mod kinds;
 mod schema;
 mod table;
 
+pub(in crate::scene) use kinds::Str::Path;
 pub(in crate::scene) use kinds::Triple::Point;
 pub(in crate::scene) use kinds::{Kind, List, Optional, Quaternion};
 pub(in crate::scene) use schema::Schema;

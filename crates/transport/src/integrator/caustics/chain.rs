@@ -80,7 +80,8 @@ fn start_at_camera(rays: &Rays, row: usize, sphere: u32) -> SpecularChain {
 /// outside of a sphere or above the ground, by a direction of density `pdf`.
 fn start_chain(world: &World, rays: &Rays, row: usize, pdf: f32, sphere: u32) -> SpecularChain {
     let (point, toward) = (rays.origin.row(row), rays.direction.row(row));
-    let Some(normal) = world.normal_at(rays.own[row], point) else { return SpecularChain::NONE };
+    let normal = world.normal_at(rays.own[row], point, toward);
+    let Some(normal) = normal else { return SpecularChain::NONE };
     if normal.dot(toward) <= 0.0 {
         return SpecularChain::NONE;
     }
