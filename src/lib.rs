@@ -100,7 +100,8 @@ pub mod scene {
         FileError, Filter, Footprint, Ground, Header, Identity, Insets, Integrator, InvalidSetting,
         Label, Lens, Lettering, Light, LightChoice, Look, Material, NamedMaterial, Place, Pose,
         Preset, Projection, Rgb, Roulette, SamplerKind, ScaleBar, Scene, Settings, Slice,
-        SliceMode, SlicePlane, Spheres, Sticks, Tone, text_without_columns, write, write_as,
+        SliceMode, SlicePlane, Spheres, Sticks, Tone, Triangles, text_without_columns, write,
+        write_as,
     };
 
     /// Generators of spheres.

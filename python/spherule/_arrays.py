@@ -5,7 +5,7 @@ Arrays of float32 and float64 are passed as they are, whatever their strides; al
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ._errors import Error
@@ -124,6 +124,24 @@ def shapes(
     if (wrong := np.flatnonzero(~quaternions.any(axis=1))).size:
         raise Error(f"orientation[{wrong[0]}] is 0, but must be a quaternion w, x, y, z")
     return axes, quaternions
+
+
+def triangles(value: Any) -> tuple[npt.NDArray[np.float64] | None, dict[str, Any] | None]:
+    """Corners of all triangles but the first, and this one as a section, whose material and color all have."""
+    import numpy as np
+
+    if value is None:
+        return None, None
+    section = dict(value) if isinstance(value, Mapping) else {"corners": value}
+    corners = floats("triangles", section.pop("corners", ())).astype(np.float64)
+    if corners.ndim != 3 or corners.shape[1:] != (3, 3):
+        raise Error(f"`triangles` has the shape {corners.shape}, but must have (n, 3, 3): three corners each")
+    wrong = np.flatnonzero(~np.isfinite(corners).all(axis=(1, 2)))
+    if len(wrong):
+        raise Error(f"triangles[{wrong[0]}] has a corner that is not finite")
+    if not len(corners):
+        return None, None
+    return corners[1:].reshape(-1), {**dict(zip("abc", corners[0].tolist())), **section}
 
 
 def table(name: str, value: Any, width: int = 3) -> npt.NDArray[Any]:

@@ -67,7 +67,10 @@ class Scene:
         slices: Planes that cut spheres away, as in ``["z > 50%"]``; ``slice_mode`` is ``"remove"``, ``"caps"`` or
             ``"hide"``.
         render, camera, look, legend, axes, scale_bar, label, lettering, environment, ground, slice, light, material,
-            sphere, stick, ellipsoid, cone, generate, file: Sections, as :mod:`spherule.sections` types them.
+            sphere, stick, ellipsoid, cone, triangle, mesh, generate, file: Sections, as :mod:`spherule.sections` types
+            them.
+        triangles: (n, 3, 3) corners of triangles, such as the faces of a wall or of an isosurface; or a dict of these
+            ``corners``, a ``material`` and a ``color`` for all.
 
     Raises:
         Error: Anything that cannot be used, by name and row, with the text of the program.
@@ -87,6 +90,7 @@ class Scene:
         from . import _native
 
         given: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
+        triangles, first = _arrays.triangles(given.pop("triangles", None))
         _options.check(given, _options.PARTICLES, _options.STYLE, _options.SECTIONS)
         sections = _options.part(given, _options.SECTIONS)
         color_bar = given.pop("color_bar", None)
@@ -95,6 +99,8 @@ class Scene:
             color_bar = None
         if "background" in given:
             sections["look"] = {**sections.get("look", {}), "background": given["background"]}
+        if first is not None:
+            sections["triangle"] = [*sections.get("triangle", []), first]
         text, keys = _toml.document(sections)
         if particles is None and (idle := (set(given) & _options.PARTICLES) | ({"values"} & set(given))):
             raise Error(f"`{sorted(idle)[0]}` needs particles; give their positions first")
@@ -103,7 +109,7 @@ class Scene:
             columns = _columns(particles, given, sections)
         self._made(
             _native.Scene(
-                {"text": text, "folder": os.getcwd(), "keys": keys},
+                {"text": text, "folder": os.getcwd(), "keys": keys, "triangles": triangles},
                 columns,
                 _style(given),
                 _view(given, color_bar),

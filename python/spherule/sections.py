@@ -240,6 +240,31 @@ class Cone(_Cone, total=False):
     color: Color
 
 
+class _Triangle(TypedDict):
+    a: Vector
+    b: Vector
+    c: Vector
+
+
+class Triangle(_Triangle, total=False):
+    """``[[triangle]]``: flat, between three corners, seen from both sides. Many of them are an array: ``triangles=``."""
+
+    material: str
+    color: Color
+
+
+class _Mesh(TypedDict):
+    path: str
+
+
+class Mesh(_Mesh, total=False):
+    """``[[mesh]]``: the faces of a PLY file."""
+
+    material: str
+    color: Color
+    scale: float
+
+
 class _Stick(TypedDict):
     to: Vector
     radius: float
@@ -316,5 +341,7 @@ class Sections(TypedDict, total=False):
     stick: Sequence[Stick]
     ellipsoid: Sequence[Ellipsoid]
     cone: Sequence[Cone]
+    triangle: Sequence[Triangle]
+    mesh: Sequence[Mesh]
     generate: Sequence[Generate]
     file: Sequence[File]

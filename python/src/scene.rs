@@ -53,13 +53,15 @@ type SceneColumns<'py> = (
 /// Sections as in a scene file.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-struct Sections {
+struct Sections<'py> {
     /// TOML.
     text: String,
     /// The folder of the files that it names.
     folder: PathBuf,
     /// The keys of each section that is given.
     keys: HashMap<String, Vec<String>>,
+    /// Corners of more triangles like the last of the text.
+    triangles: Option<PyReadonlyArray1<'py, f64>>,
 }
 
 /// Options for the looks of particles, by the names that the program has for them.
@@ -130,7 +132,7 @@ impl Scene {
     #[new]
     fn new(
         py: Python<'_>,
-        sections: Sections,
+        sections: Sections<'_>,
         particles: Option<ParticleTable<'_>>,
         style: StyleTable,
         view: ViewTable,
@@ -265,9 +267,18 @@ impl Scene {
     }
 }
 
-impl Sections {
+impl Sections<'_> {
     fn parse(&self) -> Result<spherule::Scene, Fault> {
-        Ok(spherule::Scene::parse(&self.text, KEYWORDS, &self.folder)?)
+        let mut scene = spherule::Scene::parse(&self.text, KEYWORDS, &self.folder)?;
+        let triangles = &mut scene.triangles;
+        let last = triangles.material.last().copied().zip(triangles.color.last().copied());
+        let numbers = self.triangles.as_ref().and_then(|numbers| numbers.as_slice().ok());
+        if let (Some(numbers), Some((material, color))) = (numbers, last) {
+            for corners in numbers.as_chunks::<3>().0.as_chunks::<3>().0 {
+                triangles.push(corners.map(Into::into), material, color);
+            }
+        }
+        Ok(scene)
     }
 }
 

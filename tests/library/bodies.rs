@@ -130,6 +130,13 @@ const KINDS: [(BodyKind, Push); BodyKind::ALL.len() - 1] = [
         let end = axis * half.max_element();
         scene.cones.push(center + end, center - end, radius, row, color);
     }),
+    (BodyKind::Triangle, |scene, center, half, row, color| {
+        let long = longest(half) * half.max_element();
+        let rest = half - long;
+        let side = longest(rest) * rest.max_element();
+        let corners = [center + long, center - long + side, center - long - side];
+        scene.triangles.push(corners, row, color);
+    }),
 ];
 
 /// The axis along which a box is longest.
@@ -287,7 +294,9 @@ fn hidden_bodies_still_throw_shadows() {
 
 #[test]
 fn nothing_is_seen_from_within() {
-    for (kind, push) in KINDS {
+    // Triangles have no inside.
+    let solid = KINDS.into_iter().filter(|(kind, _)| *kind != BodyKind::Triangle);
+    for (kind, push) in solid {
         let mut scene = furnace();
         scene.settings.depth = Some(3);
         let row = material(&mut scene, lambertian(0.9));
@@ -320,6 +329,7 @@ fn written_scenes_keep_their_bodies() {
     write(&scene, &path).unwrap();
     let read = Scene::load(&path).unwrap();
     assert_eq!((&read.sticks, &read.cones), (&scene.sticks, &scene.cones));
+    assert_eq!(read.triangles, scene.triangles);
     let (mut found, expected) = (read.ellipsoids, scene.ellipsoids);
     for (a, b) in found.orientation.iter_mut().zip(&expected.orientation) {
         assert!(a.angle_between(*b) < 1e-7);
@@ -353,6 +363,12 @@ fn invalid_bodies_are_refused_by_name() {
         ("cone 4", |scene| scene.cones.base[4] = scene.cones.apex[4]),
         ("cone 6", |scene| scene.cones.color[6].x = 2.0),
         ("differ in length", |scene| scene.cones.color.truncate(3)),
+        ("triangle 3", |scene| scene.triangles.corners[3][1].x = f64::INFINITY),
+        ("triangle 4", |scene| {
+            scene.triangles.corners[4] = [DVec3::X, DVec3::X * 3.0, DVec3::X * 2.0];
+        }),
+        ("triangle 6", |scene| scene.triangles.color[6].x = 2.0),
+        ("differ in length", |scene| scene.triangles.color.truncate(3)),
     ] {
         refused(&change, name);
     }
@@ -396,9 +412,74 @@ fn invalid_sections_of_bodies_are_refused() {
             "nowhere",
         ),
         ("cone", "apex = [0, 0, 0]\nbase = [0, 0, 1]\nradius = 1\nheight = 1", "height"),
+        ("triangle", "a = [0, 0, 0]\nb = [0, 0, 1]", "c = [x, y, z]"),
+        ("triangle", "a = [0, 0, 0]\nb = [0, 0, 1]\nc = [0, 0, 3]", "one line"),
+        ("triangle", "a = [0, 0, 0]\nb = [0, 0, 1]\nc = [0, 1, inf]", "inf"),
+        ("triangle", "a = [0, 0, 0]\nb = [0, 0, 1]\nc = [0, 1, 0]\nradius = 1", "radius"),
+        ("mesh", "path = \"nowhere.ply\"", "nowhere.ply"),
+        ("mesh", "color = \"red\"", "path"),
     ] {
         let text = format!("[[{body}]]\n{keys}\n");
         let error = Scene::parse(&text, "test", std::path::Path::new("")).unwrap_err();
         assert!(error.to_string().contains(words), "{keys}: {error}");
     }
+}
+
+/// A closed mesh: an octahedron whose faces are divided, on a sphere, as PLY.
+fn ball(radius: f64) -> String {
+    let mut triangles: Vec<[DVec3; 3]> = Vec::new();
+    for x in [DVec3::X, DVec3::NEG_X] {
+        for (y, z) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+            triangles.push([x, DVec3::Y * y, DVec3::Z * z]);
+        }
+    }
+    for _ in 0..3 {
+        let divided = triangles.iter().flat_map(|&[a, b, c]| {
+            let [ab, bc, ca] = [a + b, b + c, c + a].map(DVec3::normalize);
+            [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+        });
+        triangles = divided.collect();
+    }
+    let count = triangles.len();
+    let mut text = format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
+         element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        3 * count,
+        count + 1
+    );
+    text.extend(triangles.as_flattened().iter().map(|corner| {
+        let [x, y, z] = (*corner * radius).as_vec3().to_array();
+        format!("{x} {y} {z}\n")
+    }));
+    let face = |first: usize| format!("3 {first} {} {}\n", first + 1, first + 2);
+    text.extend((0..count).map(|row| face(3 * row)));
+    // One without area.
+    text + "3 0 1 1\n"
+}
+
+#[test]
+fn meshes_are_closed() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("ball.ply"), ball(0.5)).unwrap();
+    let path = folder.path().join("mesh.toml");
+    let text = "[material.black]\nkind = \"lambertian\"\ncolor = 0\n\
+                [[mesh]]\npath = \"ball.ply\"\nscale = 2\nmaterial = \"black\"\n";
+    std::fs::write(&path, text).unwrap();
+    let mut scene = Scene::load(&path).unwrap();
+    assert_eq!(scene.triangles.len(), 512);
+    assert!(scene.warnings[0].contains("1 of 513 triangles"), "{:?}", scene.warnings);
+    assert!(
+        spherule_render::scene::included_files(&path).iter().any(|file| file.ends_with("ball.ply"))
+    );
+    // No light of the white environment comes in.
+    scene.settings.depth = Some(2);
+    (scene.settings.width, scene.settings.height, scene.settings.spp) = (64, 64, 4);
+    look(&mut scene, DVec3::new(0.2, 0.1, 0.0), DVec3::new(1.0, 0.5, 0.2), 120.0);
+    assert_every_pixel(&render_scene(&scene).image, 0.0, "inside");
+    // White from outside, and within it a sphere that nothing lights.
+    scene.materials[scene.triangles.material[0] as usize].material = lambertian(1.0);
+    scene.settings.depth = None;
+    sphere(&mut scene, DVec3::ZERO, 0.9, lambertian(0.0));
+    look(&mut scene, DVec3::Z * 4.0, DVec3::ZERO, 40.0);
+    assert_expected(measure(&scene), 1.0, "furnace");
 }

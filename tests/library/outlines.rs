@@ -120,6 +120,33 @@ fn a_cone_covers_its_outline() {
     }
 }
 
+#[test]
+fn a_triangle_covers_its_outline_from_both_sides() {
+    let corners =
+        [DVec3::new(-2.0, -1.5, 1.0), DVec3::new(2.1, -1.0, 0.0), DVec3::new(0.3, 2.0, -1.0)];
+    for (order, id) in [([0, 1, 2], 0), ([0, 2, 1], 0)] {
+        let mut scene = parallel();
+        let row = material(&mut scene, lambertian(0.5));
+        scene.triangles.push(order.map(|corner: usize| corners[corner]), row, Rgb::X);
+        let features = features(&scene);
+        let across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+        let area = across.z.abs() / 2.0;
+        assert!((covered(&features) - area).abs() < 0.005 * area, "{area}");
+        let middle = at(&features, 0.05, 0.05);
+        assert_eq!((middle.albedo, middle.id), ([0.5, 0.0, 0.0], id));
+        let off = DVec3::from(middle.normal.map(f64::from)) - across.normalize();
+        assert!(off.length() < 1e-3, "{:?}", middle.normal);
+        // The height of the plane there; a pixel is a tenth wide.
+        let height = corners[0].z
+            - (across.x * (0.05 - corners[0].x) + across.y * (0.05 - corners[0].y)) / across.z;
+        assert!(
+            (f64::from(middle.depth) - (10.0 - height)).abs() < 0.05,
+            "{} {height}",
+            middle.depth
+        );
+    }
+}
+
 /// The layers of a scene that is cut across the view axis.
 fn capped(scene: &Scene, distance: f64) -> Vec<Features> {
     let slices = vec![Slice { normal: DVec3::Z, distance, mode: SliceMode::Caps }];

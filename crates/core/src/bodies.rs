@@ -13,6 +13,7 @@ use crate::lanes::set_bits;
 use crate::ray::{ExactRay, Hits, MISS, Rays};
 use crate::slabs::RaySlabs;
 use crate::spheres::LEAF;
+use crate::triangles::Triangles;
 use glam::{DVec3, Vec3};
 use std::cmp::Ordering;
 
@@ -27,6 +28,8 @@ pub struct BodyTrees<'a> {
     pub ellipsoids: Option<&'a Ellipsoids>,
     /// Cones.
     pub cones: Option<&'a Cones>,
+    /// Triangles.
+    pub triangles: Option<&'a Triangles>,
 }
 
 /// Evaluates an expression of the tree of a kind, whatever its type: the one place where kinds are told apart. `None` for spheres, and
@@ -38,6 +41,7 @@ macro_rules! with_tree {
             BodyKind::Capsule => $bodies.capsules.map(|$tree| $value),
             BodyKind::Ellipsoid => $bodies.ellipsoids.map(|$tree| $value),
             BodyKind::Cone => $bodies.cones.map(|$tree| $value),
+            BodyKind::Triangle => $bodies.triangles.map(|$tree| $value),
         }
     };
 }
@@ -62,7 +66,7 @@ macro_rules! with_body {
 impl<'a> BodyTrees<'a> {
     /// Spheres, and no other bodies.
     pub fn of_spheres(tree: Tree<'a>) -> Self {
-        Self { tree, capsules: None, ellipsoids: None, cones: None }
+        Self { tree, capsules: None, ellipsoids: None, cones: None, triangles: None }
     }
 
     /// The numbers of hits.
@@ -214,7 +218,7 @@ pub(crate) fn row_at<S: Shape>(tree: &BodyTree<S>, row: usize, ray: &ExactRay, t
 
 /// Replaces each hit by one on a body that is no sphere if that is nearer. On entry hits are those of the spheres and the ground, or
 /// [`MISS`] with a bound; see [`BodyTrees`] for the hits on return. Of bodies at equal distances spheres come first, then
-/// capsules, ellipsoids and cones.
+/// capsules, ellipsoids, cones and triangles.
 ///
 /// Returns how many decisions were made on integers.
 pub fn closest(bodies: BodyTrees, rays: &Rays, hits: &mut Hits) -> u64 {

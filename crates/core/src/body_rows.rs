@@ -1,4 +1,4 @@
-//! Numbers of hits: rows of the spheres, after them two for each capsule, then one for each ellipsoid, and one for each cone.
+//! Numbers of hits: rows of the spheres, after them two for each capsule, then one for each ellipsoid, cone and triangle.
 
 use crate::ray::GROUND;
 
@@ -13,17 +13,21 @@ pub enum BodyKind {
     Ellipsoid,
     /// Cones.
     Cone,
+    /// Triangles.
+    Triangle,
 }
 
 impl BodyKind {
     /// Names, in the words of scene files.
-    const NAMES: [&'static str; Self::ALL.len()] = ["sphere", "stick", "ellipsoid", "cone"];
+    const NAMES: [&'static str; Self::ALL.len()] =
+        ["sphere", "stick", "ellipsoid", "cone", "triangle"];
 
     /// All kinds, in their order.
-    pub const ALL: [Self; 4] = [Self::Sphere, Self::Capsule, Self::Ellipsoid, Self::Cone];
+    pub const ALL: [Self; 5] =
+        [Self::Sphere, Self::Capsule, Self::Ellipsoid, Self::Cone, Self::Triangle];
 
     /// Numbers of hits of a body of each kind: each half of a capsule has one.
-    const HITS: [usize; Self::ALL.len()] = [1, 2, 1, 1];
+    const HITS: [usize; Self::ALL.len()] = [1, 2, 1, 1, 1];
 
     /// The name of a body of the kind, in the words of scene files.
     pub const fn name(self) -> &'static str {
@@ -123,7 +127,7 @@ mod tests {
 
     #[test]
     fn every_hit_is_one_body() {
-        let rows = BodyRows([3, 2, 2, 2]);
+        let rows = BodyRows([3, 2, 2, 2, 2]);
         let mut hit = 0;
         for kind in BodyKind::ALL {
             assert_eq!(rows.first(kind), hit as usize);
@@ -135,9 +139,9 @@ mod tests {
                 }
             }
         }
-        assert_eq!((hit, rows.all_hits()), (11, 11));
+        assert_eq!((hit, rows.all_hits()), (13, 13));
         assert!([hit, GROUND, MISS].into_iter().all(|hit| rows.row(hit).is_none()));
-        let alone = BodyRows([0, 0, 0, 1]);
-        assert_eq!(alone.row(0), Some(BodyRow::new(BodyKind::Cone, 0)));
+        let alone = BodyRows([0, 0, 0, 0, 1]);
+        assert_eq!(alone.row(0), Some(BodyRow::new(BodyKind::Triangle, 0)));
     }
 }

@@ -56,6 +56,7 @@ mod ray;
 mod slabs;
 mod spheres;
 mod translucency;
+mod triangles;
 mod vec3;
 
 #[cfg(doctest)]
@@ -136,6 +137,10 @@ pub mod internals {
     /// Rays among translucent bodies.
     pub mod translucency {
         pub use crate::translucency::*;
+    }
+    /// Triangles.
+    pub mod triangles {
+        pub use crate::triangles::*;
     }
     /// Vectors of lanes.
     pub mod vec3 {

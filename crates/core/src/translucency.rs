@@ -314,7 +314,7 @@ impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
     }
 
     /// Compares the distances of two bodies; of those at the same distance the one that comes first in the user's order, spheres
-    /// before capsules, ellipsoids and cones, counts as the nearer one. The ground comes last, and a bound first.
+    /// before capsules, ellipsoids, cones and triangles, counts as the nearer one. The ground comes last, and a bound first.
     fn order(&self, ray: &ExactRay, a: &Fragment, b: &Fragment, exact: &mut u64) -> Ordering {
         if a.root.t + a.root.error < b.root.t - b.root.error {
             return Ordering::Less;

@@ -12,6 +12,7 @@ use crate::fixed::Fixed;
 use crate::random::Random;
 use crate::ray::{ExactRay, Hits, MISS, Rays};
 use crate::spheres::Spheres;
+use crate::triangles::Triangle;
 use glam::DVec3;
 
 /// A kind of body, with an oracle for each of its answers.
@@ -177,11 +178,13 @@ pub(crate) fn trees_find_the_hits_of_brute_force<S: Tested>() {
         let capsules = random_tree::<Capsule>(&mut random, count, builder);
         let ellipsoids = random_tree::<Ellipsoid>(&mut random, count, builder);
         let cones = random_tree::<Cone>(&mut random, count, builder);
+        let triangles = random_tree::<Triangle>(&mut random, count, builder);
         let others = BodyTrees {
             tree: Tree { bvh: &bvh, spheres: &spheres },
             capsules: (S::KIND != BodyKind::Capsule).then_some(&capsules),
             ellipsoids: (S::KIND != BodyKind::Ellipsoid).then_some(&ellipsoids),
             cones: (S::KIND != BodyKind::Cone).then_some(&cones),
+            triangles: (S::KIND != BodyKind::Triangle).then_some(&triangles),
         };
         let all = S::among(&tree, others);
         let mut rays = Rays::with_capacity(300);

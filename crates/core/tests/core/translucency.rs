@@ -17,6 +17,7 @@ use spherule_core::internals::spheres::Spheres;
 use spherule_core::internals::translucency::{
     AttenuatedRay, OpticalDepth, SeenBody, TranslucentBodies,
 };
+use spherule_core::internals::triangles::{Triangle, TriangleItem, Triangles};
 use std::collections::HashMap;
 
 const OPACITIES: [f64; 5] = [0.0, 0.1, 0.5, 0.8, 1.0];
@@ -28,6 +29,7 @@ enum Body {
     Capsule(Capsule),
     Ellipsoid(Ellipsoid),
     Cone(Cone),
+    Triangle(Triangle),
 }
 
 impl Body {
@@ -49,6 +51,7 @@ impl Body {
             Self::Capsule(body) => of(&body, ray, is_opaque),
             Self::Ellipsoid(body) => of(&body, ray, is_opaque),
             Self::Cone(body) => of(&body, ray, is_opaque),
+            Self::Triangle(body) => of(&body, ray, is_opaque),
         }
     }
 }
@@ -60,6 +63,7 @@ struct Scene {
     capsules: Capsules,
     ellipsoids: Ellipsoids,
     cones: Cones,
+    triangles: Triangles,
 }
 
 impl Scene {
@@ -91,6 +95,11 @@ impl Scene {
             let cone = ConeItem::new(point(), point(), [0.25, 0.5][id % 2], id as u32);
             cone_items.extend(cone);
         }
+        let mut triangle_items = Vec::new();
+        while triangle_items.len() < 20 {
+            let id = triangle_items.len() as u32;
+            triangle_items.extend(TriangleItem::new([point(), point(), point()], id));
+        }
         let mut spheres = Spheres::with_capacity(rows.len());
         for (id, &(center, radius)) in rows.iter().enumerate() {
             spheres.push(center, radius, id as u32);
@@ -113,9 +122,14 @@ impl Scene {
             let row = cones.ids().iter().position(|&id| id == item.id()).expect("a cone");
             Body::Cone(cones.body(row))
         });
-        let of_items = of_items.into_iter().flatten();
-        let bodies = of_spheres.chain(of_sticks).chain(of_items).chain(of_cones).collect();
-        (Self { bodies, spheres, capsules, ellipsoids, cones }, bvh)
+        let of_triangles = triangle_items.iter().map(|item| {
+            let corners = item.corners().map(Vec3::as_dvec3);
+            Body::Triangle(Triangle { corners })
+        });
+        let triangles = Triangles::build(&triangle_items, builder);
+        let of_items = of_items.into_iter().flatten().chain(of_cones).chain(of_triangles);
+        let bodies = of_spheres.chain(of_sticks).chain(of_items).collect();
+        (Self { bodies, spheres, capsules, ellipsoids, cones, triangles }, bvh)
     }
 
     /// Its bodies in their trees.
@@ -125,6 +139,7 @@ impl Scene {
             capsules: Some(&self.capsules),
             ellipsoids: Some(&self.ellipsoids),
             cones: Some(&self.cones),
+            triangles: Some(&self.triangles),
         }
     }
 
@@ -190,13 +205,13 @@ fn ray(random: &mut Random) -> ExactRay {
 #[test]
 fn rays_end_where_all_hits_in_their_exact_order_end_them() {
     let builders = Builder::ALL;
-    let (mut ends, mut misses) = ([0; 4], 0);
+    let (mut ends, mut misses) = ([0; BodyKind::ALL.len()], 0);
     for seed in 0..6 {
         let (scene, bvh) = Scene::new(seed, builders[seed as usize % 3]);
         let bodies = scene.bodies(&bvh, 1.0);
         let mut random = Random::new(100 + seed);
         let mut fragments = Vec::new();
-        for _ in 0..400 {
+        for _ in 0..500 {
             let (ray, threshold) =
                 (ray(&mut random), OpticalDepth::threshold(f64::from(random.single())));
             let known = (f64::INFINITY, MISS);

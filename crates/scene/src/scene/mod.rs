@@ -31,7 +31,9 @@ pub use annotations::{
     Anchor, Annotations, AxisTripod, ColorBar, ColorLegend, Label, Lettering, ScaleBar,
 };
 pub use axis::Axis;
-pub use bodies::{BodyBytes, BodyColumns, Cones, Ellipsoids, Hull, PlacedBodies, Sticks};
+pub use bodies::{
+    BodyBytes, BodyColumns, Cones, Ellipsoids, Hull, PlacedBodies, Sticks, Triangles,
+};
 pub use camera::{Camera, Insets, Lens, Pose, Projection};
 pub use file::included_files;
 pub use footprint::{ColorColumn, Footprint};
@@ -58,6 +60,8 @@ pub struct Scene {
     pub ellipsoids: Ellipsoids,
     /// Cones, in columns. They are numbered after the ellipsoids.
     pub cones: Cones,
+    /// Triangles, in columns. They are numbered after the cones.
+    pub triangles: Triangles,
     /// Materials of spheres and ground; `Spheres::material` and `Ground::material` are rows of it.
     pub materials: Vec<NamedMaterial>,
     /// The infinite ground plane, if there is one.

@@ -12,6 +12,7 @@ use crate::cones::Cone;
 use crate::ellipsoids::Ellipsoid;
 use crate::scene::{PlacedBodies, Rgb, Scene};
 use crate::shade::MaterialKind;
+use spherule_core::internals::triangles::Triangle;
 use std::borrow::Cow;
 
 /// Bodies of one kind in world space, with their tree.
@@ -76,6 +77,8 @@ pub struct OtherBodies {
     pub ellipsoids: WorldBodies<Ellipsoid>,
     /// Cones, which have rows after those.
     pub cones: WorldBodies<Cone>,
+    /// Triangles, which have rows after those.
+    pub triangles: WorldBodies<Triangle>,
 }
 
 impl OtherBodies {
@@ -85,6 +88,7 @@ impl OtherBodies {
             sticks: placed(&scene.sticks, scene, transform),
             ellipsoids: placed(&scene.ellipsoids, scene, transform),
             cones: placed(&scene.cones, scene, transform),
+            triangles: placed(&scene.triangles, scene, transform),
         }
     }
 
@@ -96,6 +100,7 @@ impl OtherBodies {
             capsules: Some(&self.sticks.all),
             ellipsoids: Some(&self.ellipsoids.all),
             cones: Some(&self.cones.all),
+            triangles: Some(&self.triangles.all),
         }
     }
 
@@ -106,6 +111,7 @@ impl OtherBodies {
             capsules: Some(self.sticks.seen()),
             ellipsoids: Some(self.ellipsoids.seen()),
             cones: Some(self.cones.seen()),
+            triangles: Some(self.triangles.seen()),
         }
     }
 
@@ -116,6 +122,7 @@ impl OtherBodies {
             BodyKind::Capsule => self.sticks.rows_of_seen(),
             BodyKind::Ellipsoid => self.ellipsoids.rows_of_seen(),
             BodyKind::Cone => self.cones.rows_of_seen(),
+            BodyKind::Triangle => self.triangles.rows_of_seen(),
         }
     }
 

@@ -4,14 +4,17 @@
 mod cones;
 mod ellipsoids;
 mod sticks;
+mod triangles;
 
 pub use cones::Cones;
 pub use ellipsoids::Ellipsoids;
 pub use sticks::Sticks;
+pub use triangles::Triangles;
 
 pub(in crate::scene) use cones::ConeKeys;
 pub(in crate::scene) use ellipsoids::EllipsoidKeys;
 pub(in crate::scene) use sticks::StickKeys;
+pub(in crate::scene) use triangles::{MeshKeys, TriangleKeys};
 
 use super::file::{Block, Materials, solid_row};
 use super::keys::{Schema, Section};
@@ -159,7 +162,7 @@ impl Scene {
     /// The bodies of all kinds but spheres, in the order in which they are numbered.
     #[doc(hidden)]
     pub fn other_bodies(&self) -> [&dyn BodyColumns; BodyKind::ALL.len() - 1] {
-        [&self.sticks, &self.ellipsoids, &self.cones]
+        [&self.sticks, &self.ellipsoids, &self.cones, &self.triangles]
     }
 
     /// The numbers of bodies.
@@ -173,12 +176,12 @@ impl Scene {
 
     /// The same bodies, as files describe them.
     pub(super) fn file_bodies(&self) -> [&dyn FileBodies; BodyKind::ALL.len() - 1] {
-        [&self.sticks, &self.ellipsoids, &self.cones]
+        [&self.sticks, &self.ellipsoids, &self.cones, &self.triangles]
     }
 
     /// Reads the same bodies from files.
     pub(super) fn file_bodies_mut(&mut self) -> [&mut dyn FileBodies; BodyKind::ALL.len() - 1] {
-        [&mut self.sticks, &mut self.ellipsoids, &mut self.cones]
+        [&mut self.sticks, &mut self.ellipsoids, &mut self.cones, &mut self.triangles]
     }
 
     /// Appends the same bodies of another scene; `material` gives the row here of a row of its materials.
@@ -187,6 +190,7 @@ impl Scene {
         self.sticks.append(other.sticks.clone(), &material);
         self.ellipsoids.append(other.ellipsoids.clone(), &material);
         self.cones.append(other.cones.clone(), &material);
+        self.triangles.append(other.triangles.clone(), &material);
     }
 
     /// Returns the rows of bodies that slices do not remove.

@@ -8,6 +8,7 @@
 pub(in crate::scene) mod block;
 mod environment;
 mod materials;
+mod mesh;
 mod render;
 mod spheres;
 pub(in crate::scene) mod value;
@@ -44,7 +45,7 @@ const DELIMITER_BYTES: [(u8, u64); 4] = [(b'=', 106), (b',', 373), (b'\n', 71), 
 /// Additional bytes of memory per byte of a file.
 const TEXT_BYTES: u64 = 8;
 
-/// Returns the files that a scene file names, whether they exist or not: particle files and the
+/// Returns the files that a scene file names, whether they exist or not: particle files, meshes and the
 /// environment map. A file that is not a scene names none; [`Scene::load`] reports what is wrong with
 /// it. Nor does a pipe, which can be read only once.
 pub fn included_files(path: &Path) -> Vec<PathBuf> {
@@ -56,8 +57,8 @@ pub fn included_files(path: &Path) -> Vec<PathBuf> {
     };
     let Ok(document) = text.parse::<toml::Table>() else { return Vec::new() };
     let picture = document.get("environment").and_then(|environment| environment.get("file"));
-    let particles = document.get("file").and_then(toml::Value::as_array).into_iter().flatten();
-    let named = particles.flat_map(|file| [file.get("path"), file.get("topology")]);
+    let sections = ["file", "mesh"].into_iter().filter_map(|name| document.get(name)?.as_array());
+    let named = sections.flatten().flat_map(|file| [file.get("path"), file.get("topology")]);
     let names = named.flatten().chain(picture);
     let folder = path.parent().unwrap_or(Path::new(""));
     names.filter_map(toml::Value::as_str).map(|name| folder.join(name)).collect()
@@ -217,6 +218,7 @@ fn read(source: &Source, root: &Block) -> Result<Scene, FileError> {
     for bodies in scene.file_bodies_mut() {
         bodies.read(root, &mut materials)?;
     }
+    mesh::read(source, root, &mut scene, &mut materials)?;
     scene.ground = materials::read_ground(root, &mut materials)?;
     scene.materials = materials.into_rows();
     let environment = root.block(Schema::of::<EnvironmentKeys>())?;

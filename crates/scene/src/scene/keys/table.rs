@@ -7,7 +7,7 @@ use super::kinds::{Backdrop, Entries, Flag, List, Optional, Whole, Word};
 use super::{Schema, Section, Visitor, key};
 use crate::color::{Map, Range, Scale, Spacing};
 use crate::image::Image;
-use crate::scene::bodies::{ConeKeys, EllipsoidKeys, StickKeys};
+use crate::scene::bodies::{ConeKeys, EllipsoidKeys, MeshKeys, StickKeys, TriangleKeys};
 use crate::scene::generate::{Field, Generator, Grid, Lattice, Sphereflake, Volume, Weekend};
 use crate::scene::particles::{Cell, Format};
 use crate::scene::{
@@ -25,7 +25,7 @@ use std::sync::Arc;
 type SchemaOf = fn() -> Schema;
 
 /// The sections and their schemas, by the names of their keys; `title` is no section.
-pub(in crate::scene) const SECTIONS: [(&str, SchemaOf); 20] = [
+pub(in crate::scene) const SECTIONS: [(&str, SchemaOf); 22] = [
     ("render", Schema::render),
     ("camera", Schema::of::<Camera>),
     ("look", Schema::of::<Look>),
@@ -44,6 +44,8 @@ pub(in crate::scene) const SECTIONS: [(&str, SchemaOf); 20] = [
     ("stick", Schema::of::<StickKeys>),
     ("ellipsoid", Schema::of::<EllipsoidKeys>),
     ("cone", Schema::of::<ConeKeys>),
+    ("triangle", Schema::of::<TriangleKeys>),
+    ("mesh", Schema::of::<MeshKeys>),
     ("generate", Schema::of::<GenerateKeys>),
     ("file", Schema::of::<FileKeys>),
 ];
