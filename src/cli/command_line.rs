@@ -1,8 +1,7 @@
 //! The arguments of the process, with the default command `render` inserted.
 
-use super::args::{Args, Command};
 use super::failure::Failure;
-use clap::{CommandFactory, Subcommand};
+use clap::Command;
 use std::env;
 use std::ffi::{OsStr, OsString};
 use std::fs;
@@ -24,29 +23,29 @@ const LIKENESS: f64 = 0.6;
 /// Maximum number of files of a folder that are compared with an unknown name.
 const COMPARED: usize = 10_000;
 
-/// Returns the arguments of this process, its own name first. A file or an option of `render` that comes
-/// first means `render`; the name of a command is never a file.
-pub(super) fn command_line() -> Result<Vec<OsString>, Failure> {
-    complete(env::args_os().collect())
+/// Returns the arguments of this process, its own name first; `program` is the definition of the program. A file or an
+/// option of `render` that comes first means `render`; the name of a command is never a file.
+pub(super) fn command_line(program: &Command) -> Result<Vec<OsString>, Failure> {
+    complete(program, env::args_os().collect())
 }
 
-fn complete(mut line: Vec<OsString>) -> Result<Vec<OsString>, Failure> {
+fn complete(program: &Command, mut line: Vec<OsString>) -> Result<Vec<OsString>, Failure> {
     let Some(first) = line.get(1) else { return Ok(line) };
-    let is_known =
-        |word: &str| OWN.contains(&word) || word == HELP || Command::has_subcommand(word);
+    let is_command = |word: &str| word == HELP || program.find_subcommand(word).is_some();
+    let is_known = |word: &str| OWN.contains(&word) || is_command(word);
     if first.to_str().is_some_and(is_known) {
         return Ok(line);
     }
     if !first.as_encoded_bytes().starts_with(b"-") && !exists(Path::new(first)) {
-        return Err(Failure::usage("", unknown(first, &commands())));
+        return Err(Failure::usage("", unknown(first, &commands(program))));
     }
     line.insert(1, USUAL.into());
     Ok(line)
 }
 
 /// Names of all commands.
-fn commands() -> Vec<String> {
-    let mut program = Args::command();
+fn commands(program: &Command) -> Vec<String> {
+    let mut program = program.clone();
     program.build();
     let commands = program.get_subcommands().filter(|command| !command.is_hide_set());
     commands.flat_map(|command| command.get_name_and_visible_aliases()).map(str::to_owned).collect()
@@ -75,10 +74,12 @@ fn unknown(word: &OsStr, commands: &[String]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::args::Args;
+    use clap::CommandFactory;
 
     fn completed(words: &[&str]) -> Result<Vec<OsString>, String> {
         let line = std::iter::once(&"spherule").chain(words).map(Into::into).collect();
-        complete(line).map_err(|failure| failure.to_string())
+        complete(&Args::command(), line).map_err(|failure| failure.to_string())
     }
 
     #[test]

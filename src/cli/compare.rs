@@ -1,8 +1,8 @@
 //! `spherule compare`: measures the difference between an image and a reference.
 
-use super::args::read_help;
 use super::failure::Failure;
 use super::files::Files;
+use super::options::picture::read_help;
 use super::output;
 use indicatif::HumanCount;
 use serde::Serialize;

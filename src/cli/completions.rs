@@ -1,14 +1,20 @@
 //! `spherule completions`: shell completion scripts.
 
-use super::args::{Args, CompletionsArgs};
 use super::output;
-use clap::CommandFactory;
 use std::process::ExitCode;
 
+/// Arguments of `spherule completions`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// Shell to print the script for
+    #[arg(value_enum)]
+    shell: clap_complete::Shell,
+}
+
 /// Prints the script.
-pub(super) fn run(args: &CompletionsArgs) -> ExitCode {
+pub(super) fn run(args: &Args, mut program: clap::Command) -> ExitCode {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut Args::command(), "spherule", &mut script);
+    clap_complete::generate(args.shell, &mut program, "spherule", &mut script);
     output::print(String::from_utf8_lossy(&script).trim_end());
     ExitCode::SUCCESS
 }

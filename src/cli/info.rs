@@ -1,10 +1,9 @@
 //! `spherule info`: prints the contents of a scene, its memory, and the work that a render skips.
 
-use super::args::InfoArgs;
 use super::contents::{BodyCounts, dropped, found, plural};
 use super::failure::Failure;
 use super::files::Files;
-use super::particles::ParticleInfo;
+use super::particles::{ParticleArgs, ParticleInfo};
 use super::rows::RowInfo;
 use super::source::Source;
 use super::{devices, output, settings, slices};
@@ -14,7 +13,27 @@ use spherule_render::World;
 use spherule_render::film::Region;
 use spherule_render::scene::{NamedMaterial, Projection, Scene};
 use spherule_render::shade::MaterialKind;
+use std::path::PathBuf;
 use std::process::ExitCode;
+
+/// Arguments of `spherule info`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// Scene (.toml), particle file (any other name), or - to read particles from standard input
+    #[arg(required_unless_present = "devices")]
+    scene: Option<PathBuf>,
+    #[command(flatten)]
+    particles: ParticleArgs,
+    /// List GPUs, their limits, and what a test of their arithmetic finds
+    #[arg(long, conflicts_with_all = ["scene", "rows"])]
+    devices: bool,
+    /// List the first and last N particles of a particle file
+    #[arg(long, value_name = "N")]
+    rows: Option<usize>,
+    /// Print one JSON object to standard output
+    #[arg(long)]
+    json: bool,
+}
 
 /// Contents of a scene, with lengths in its own unit.
 #[derive(Serialize)]
@@ -79,7 +98,7 @@ struct MemoryInfo {
 const SHOWN: usize = 12;
 
 /// Loads the scene and prints its contents.
-pub(super) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
+pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let Some(file) = &args.scene else {
         devices::list(args.json);
         return Ok(ExitCode::SUCCESS);

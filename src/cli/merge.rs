@@ -1,10 +1,10 @@
 //! `spherule merge`: combines the parts of a render into one image.
 
-use super::args::{EncodingArgs, picture_help};
 use super::contents::plural;
 use super::failure::Failure;
 use super::files::Files;
 use super::memory::MemoryArgs;
+use super::options::picture::{EncodingArgs, picture_help};
 use super::output;
 use super::picture_file;
 use super::render::{Subject, warnings};

@@ -13,15 +13,14 @@ mod devices;
 mod examples;
 mod failure;
 mod field;
-mod field_scene;
 mod files;
 mod frames;
 mod info;
-mod invocation;
 mod man;
 mod memory;
 mod merge;
 mod names;
+mod options;
 mod output;
 mod part;
 mod particles;
@@ -59,8 +58,9 @@ pub(crate) fn run() -> ExitCode {
 fn execute() -> Result<ExitCode, Failure> {
     processor::check()?;
     signals::survive_large_files();
-    match Args::of_process()? {
-        Command::Render(args) => render::run(*args),
+    let program = Args::command();
+    match Args::of_process(&program)? {
+        Command::Render(args) => render::run(*args, &program),
         Command::Merge(args) => merge::run(&args),
         Command::Status(args) => Ok(status::run(&args)),
         Command::View(args) => view::run(args),
@@ -69,8 +69,8 @@ fn execute() -> Result<ExitCode, Failure> {
         Command::Compare(args) => compare::run(&args),
         Command::Stress(args) => stress::run(&args),
         Command::Bench(args) => bench::run(&args),
-        Command::Completions(args) => Ok(completions::run(&args)),
-        Command::Man(args) => man::run(&args),
+        Command::Completions(args) => Ok(completions::run(&args, program)),
+        Command::Man(args) => man::run(&args, program),
         Command::Version => Ok(version::print_in_detail()),
     }
 }

@@ -1,6 +1,6 @@
 //! Programs that are built with GPUs.
 
-use super::DeviceSummary;
+use super::summary::DeviceSummary;
 use crate::cli::names::Device as Choice;
 use crate::cli::output;
 use indicatif::BinaryBytes;

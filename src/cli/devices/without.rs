@@ -1,6 +1,6 @@
 //! Programs that are built without GPUs.
 
-use super::DeviceSummary;
+use super::summary::DeviceSummary;
 use crate::cli::names::Device;
 use crate::cli::output;
 use spherule_render::World;

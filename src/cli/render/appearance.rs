@@ -1,34 +1,16 @@
-//! Loading of particles with the colors and materials of the options.
+//! Color bars and annotations of an image.
 
 use super::job::Job;
 use crate::cli::appearance::BarPlace;
 use crate::cli::failure::Failure;
-use crate::cli::source::Source;
 use crate::cli::write_file::write_file;
 use spherule_render::World;
 use spherule_render::atomic::check_destination;
 use spherule_render::overlay::Canvas;
 use spherule_render::overlay::annotations::{self, AnnotationDrawing};
 use spherule_render::overlay::color_bar::Bar;
-use spherule_render::scene::particles::{Legend, ParticleStyle};
+use spherule_render::scene::particles::Legend;
 use spherule_render::scene::{Annotations, Look};
-
-/// Returns the source, with the columns that colors and selections need; an error if it has no particles.
-pub(super) fn with_columns(source: Source, looks: &ParticleStyle) -> Result<Source, Failure> {
-    match source {
-        Source::Particles(path, mut options) => {
-            options.columns.wanted = looks.columns();
-            options.bonds = looks.bond_source();
-            Ok(Source::Particles(path, options))
-        }
-        other if *looks == ParticleStyle::default() => Ok(other),
-        Source::Toml(_) | Source::Prepared(_) | Source::Field { .. } => {
-            let message = "options for particles need a particle file; a scene defines its own colors and \
-                           materials";
-            Err(Failure::usage("render", message))
-        }
-    }
-}
 
 /// Checks that the color bar can be written, without changing anything.
 pub(in crate::cli) fn check_bar(job: &Job) -> Result<(), Failure> {

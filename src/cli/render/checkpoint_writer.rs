@@ -1,14 +1,14 @@
 //! Writing of checkpoints.
 
+use super::invocation::Invocation;
 use super::job::Job;
 use super::prepare::Prepared;
 use crate::cli::checkpoint::CheckpointArgs;
-use crate::cli::invocation::{CommandOptions, Invocation, render_command};
-use crate::cli::{Failure, output};
+use crate::cli::failure::Failure;
+use crate::cli::output;
 use spherule_render::atomic::{check_destination, remove_leftovers};
 use spherule_render::checkpoint::{self, Caption, Lock, Origin};
 use spherule_render::render::ResumableRender;
-use std::ffi::OsString;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -18,8 +18,8 @@ use std::time::{Duration, Instant};
 pub(super) struct CheckpointWriter {
     path: PathBuf,
     _lock: Option<Lock>,
-    folder: OsString,
-    typed: CommandOptions,
+    /// The command that checkpoints store.
+    invocation: Invocation,
     /// Time of the next checkpoint, across the images of a sequence.
     due: Mutex<Option<Instant>>,
     /// The last error, so that it is reported once.
@@ -44,14 +44,15 @@ impl CheckpointWriter {
         }
         // They cost some space, no more.
         let _ = remove_leftovers(&path);
-        let (folder, typed) = (OsString::new(), CommandOptions::default());
+        let invocation = Invocation::default();
         let (due, failure) = (Mutex::default(), Mutex::default());
-        Ok(Some(Self { path, _lock: lock, folder, typed, due, failure }))
+        Ok(Some(Self { path, _lock: lock, invocation, due, failure }))
     }
 
     /// Sets the command that checkpoints store, with its output file.
     pub(super) fn with(self, given: Invocation, output: &Path) -> Self {
-        Self { folder: given.folder.into(), typed: given.typed.stored(output), ..self }
+        let typed = given.typed.stored(output);
+        Self { invocation: Invocation { typed, ..given }, ..self }
     }
 
     /// Time of the next checkpoint; `None` to write one only on exit.
@@ -108,15 +109,15 @@ impl CheckpointWriter {
         caption: &Caption,
         render: &ResumableRender,
     ) -> io::Result<()> {
-        let folder = self.folder.clone();
-        let mut typed = self.typed.clone();
+        let Invocation { command, folder, typed } = &self.invocation;
+        let mut typed = typed.clone();
         if let Some(place) = job.place {
             typed.set("first_picture", place.index.to_string());
         }
-        let arguments = typed.arguments(&render_command());
+        let arguments = typed.arguments(command);
         let missing = || io::Error::other("the scene was not identified");
         let scene = prepared.identity.clone().ok_or_else(missing)?;
-        let origin = Origin { scene, folder, arguments, caption: caption.clone() };
+        let origin = Origin { scene, folder: folder.into(), arguments, caption: caption.clone() };
         checkpoint::write(&self.path, &origin, render)
     }
 

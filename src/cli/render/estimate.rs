@@ -1,7 +1,6 @@
 //! Estimates of the memory of a render.
 
 use super::job::Job;
-use super::layers::{need_statistics, wanted};
 use crate::cli::contents::spheres;
 use crate::cli::failure::Failure;
 use spherule_render::denoise::Denoiser;
@@ -60,7 +59,7 @@ impl Estimate {
             build: footprint.peak().saturating_sub(footprint.scene()),
             scene: footprint.scene(),
             world: footprint.resident(),
-            film: Film::bytes(region, need_statistics(job) || denoised),
+            film: Film::bytes(region, job.encoding.needs_statistics() || denoised),
             output: output(job, &scene.look, region).max(if denoised {
                 Denoiser::bytes(region)
             } else {
@@ -115,7 +114,7 @@ impl Estimate {
 /// is encoded from their channels.
 fn output(job: &Job, look: &Look, region: Region) -> u64 {
     let pixels = u64::from(region.width) * u64::from(region.height);
-    let layers = wanted(&job.encoding.layers);
+    let layers = job.encoding.wanted_layers();
     let traced = layers.iter().any(|layer| !layer.is_statistic());
     let drawn = match (look.is_plain(), look.is_transparent()) {
         (true, _) => 0,

@@ -1,7 +1,7 @@
 //! Files that a render reads and writes.
 
+use super::args::RenderArgs;
 use crate::cli::appearance::BarPlace;
-use crate::cli::args::RenderArgs;
 use crate::cli::files::Files;
 
 /// Returns the files of a render, without numbered images, whose count is not known yet.

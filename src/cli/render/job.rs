@@ -1,15 +1,14 @@
 //! A render job: scene, settings and output, validated as far as possible without the scene.
 
-use super::appearance::with_columns;
-use super::prepared_file;
-use super::sequence::Common;
+use super::args::RenderArgs;
 use super::video::Container;
 use crate::cli::annotations::AnnotationArgs;
 use crate::cli::appearance::{AppearanceArgs, BarPlace};
-use crate::cli::args::{EncodingArgs, PictureArgs, RenderArgs, ReportArgs, SpeedArgs};
+
 use crate::cli::checkpoint::CheckpointArgs;
 use crate::cli::failure::Failure;
 use crate::cli::names;
+use crate::cli::options::picture::{EncodingArgs, PictureArgs, ReportArgs, SpeedArgs};
 use crate::cli::particles::ParticleArgs;
 use crate::cli::picture_file;
 use crate::cli::sequences::SequenceArgs;
@@ -20,7 +19,7 @@ use crate::cli::threads;
 use crate::cli::views::{StyleArgs, ViewArgs};
 use spherule_render::World;
 use spherule_render::bvh::builders::Builder;
-use spherule_render::compose::{Fault, Focus, Request};
+use spherule_render::compose::{Fault, Focus, Request, Shared};
 use spherule_render::film::Region;
 use spherule_render::graphics;
 use spherule_render::image::Format;
@@ -37,6 +36,14 @@ pub(in crate::cli) struct Place {
     pub(in crate::cli) index: u64,
     /// True if no other image follows, as far as is known.
     pub(in crate::cli) last: bool,
+}
+
+/// Properties shared by all images of a sequence.
+#[derive(Clone)]
+pub(in crate::cli) struct Common {
+    pub(in crate::cli) shared: Shared,
+    /// True if the camera is placed for all images, and not only for the first.
+    pub(in crate::cli) frames_all: bool,
 }
 
 /// A render job.
@@ -139,7 +146,7 @@ impl<'a> Job<'a> {
             None => Source::Field { seed },
         };
         if matches!(source, Source::Prepared(_)) {
-            prepared_file::refuse_changes(args)?;
+            refuse_changes(args)?;
         }
         if args.style.preset().is_some() && !matches!(source, Source::Particles(..)) {
             let message = "--preset applies only to particle files; a scene defines its own style";
@@ -293,6 +300,37 @@ fn request(args: &RenderArgs, style: ParticleStyle, part: bool) -> Request {
         lens: args.views.lens(),
         ..Request::default()
     }
+}
+
+/// Returns the source, with the columns that colors and selections need; an error if it has no particles.
+fn with_columns(source: Source, looks: &ParticleStyle) -> Result<Source, Failure> {
+    match source {
+        Source::Particles(path, mut options) => {
+            options.columns.wanted = looks.columns();
+            options.bonds = looks.bond_source();
+            Ok(Source::Particles(path, options))
+        }
+        other if *looks == ParticleStyle::default() => Ok(other),
+        Source::Toml(_) | Source::Prepared(_) | Source::Field { .. } => {
+            let message = "options for particles need a particle file; a scene defines its own colors and \
+                           materials";
+            Err(Failure::usage("render", message))
+        }
+    }
+}
+
+/// Rejects options that would change a prepared scene.
+fn refuse_changes(args: &RenderArgs) -> Result<(), Failure> {
+    let none = args.looks.list(None).is_empty() && args.looks.color_bar.is_none();
+    let none = none && args.slices.list().is_empty() && args.style.list().is_empty();
+    let none = none && args.views.list().is_empty() && args.annotations.is_empty();
+    let none = none && !args.is_sequence();
+    if args.prepare.is_none() && none && !args.particles.any() {
+        return Ok(());
+    }
+    let message = "spheres, materials, camera and annotations of a prepared scene are fixed; use the file it was made \
+                   from, or remove options that change them";
+    Err(Failure::usage("render", message))
 }
 
 /// Rejects options that do not apply to pages.

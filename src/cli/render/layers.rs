@@ -4,15 +4,10 @@ use super::job::Job;
 use super::prepare::Prepared;
 use spherule_render::film::Region;
 use spherule_render::image::{Channel, Format, Values};
-use spherule_render::layers::{Layer, Layers, layers};
+use spherule_render::layers::{Layers, layers};
 use spherule_render::overlay::Matte;
 use spherule_render::render::{Options, Render, RenderError};
 use spherule_render::scene::Settings;
-
-/// Returns whether a requested layer needs statistics of the render.
-pub(super) fn need_statistics(job: &Job) -> bool {
-    wanted(&job.encoding.layers).into_iter().any(Layer::is_statistic)
-}
 
 /// Renders the requested channels.
 pub(super) fn channels(
@@ -20,7 +15,7 @@ pub(super) fn channels(
     prepared: &Prepared,
     render: &Render,
 ) -> Result<Vec<Channel>, RenderError> {
-    let wanted = wanted(&job.encoding.layers);
+    let wanted = job.encoding.wanted_layers();
     if wanted.is_empty() {
         return Ok(Vec::new());
     }
@@ -42,23 +37,4 @@ pub(super) fn channels(
 pub(in crate::cli) fn alpha(matte: &Matte, format: Format) -> Channel {
     let values = if format == Format::Exr { matte.linear() } else { matte.encoded() };
     Channel { name: "A".to_owned(), values: Values::Floats(values) }
-}
-
-/// Returns the requested layers without repetition; all if one is `None`.
-pub(super) fn wanted(typed: &[Option<Layer>]) -> Vec<Layer> {
-    let all = typed.contains(&None);
-    Layer::ALL.into_iter().filter(|layer| all || typed.contains(&Some(*layer))).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn layers_are_unique_and_in_order() {
-        assert_eq!(wanted(&[]), []);
-        let typed = [Some(Layer::Id), Some(Layer::Albedo), Some(Layer::Id)];
-        assert_eq!(wanted(&typed), [Layer::Albedo, Layer::Id]);
-        assert_eq!(wanted(&[Some(Layer::Id), None]), Layer::ALL);
-    }
 }

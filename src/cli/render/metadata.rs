@@ -4,10 +4,9 @@
 //! Equal images have equal files.
 
 use super::job::Job;
-use super::layers;
 use super::prepare::{PlacedScene, Prepared};
 use crate::cli::appearance::BarPlace;
-use crate::cli::args::EncodingArgs;
+use crate::cli::options::picture::EncodingArgs;
 use crate::cli::settings::{self, List};
 use serde_json::Value;
 use spherule_render::denoise::Judged;
@@ -71,6 +70,13 @@ pub(super) fn expected(job: &Job, placed: &PlacedScene) -> Metadata {
     subject.describe(job.format, &subject.encoding(job.encoding, job.format))
 }
 
+impl Prepared {
+    /// Returns the settings for particles, as metadata list them.
+    pub(super) fn looks(&self, job: &Job) -> Vec<(String, String)> {
+        looks(job, self.looks.as_deref(), self.legend.as_ref(), self.identity.as_ref())
+    }
+}
+
 /// Returns the settings for particles as metadata, with the scene's identity for images of a sequence. The
 /// list of a prepared scene replaces the options.
 pub(super) fn looks(
@@ -81,8 +87,7 @@ pub(super) fn looks(
 ) -> Vec<(String, String)> {
     let mut listed = prepared.map_or_else(|| typed(job, legend), <[_]>::to_vec);
     let Some(identity) = identity.filter(|_| job.is_identified()) else { return listed };
-    let layers: Vec<&str> =
-        layers::wanted(&job.encoding.layers).into_iter().map(Layer::name).collect();
+    let layers: Vec<&str> = job.encoding.wanted_layers().into_iter().map(Layer::name).collect();
     if !layers.is_empty() {
         listed.push(("layers".to_owned(), layers.join(",")));
     }

@@ -1,10 +1,13 @@
 //! `spherule render`: renders a scene to an image file.
 
 mod appearance;
+mod args;
 mod checkpoint_writer;
 mod estimate;
 mod existing;
 mod files;
+mod image;
+mod invocation;
 mod job;
 mod layers;
 mod memory;
@@ -26,51 +29,29 @@ mod video;
 mod visibility;
 
 pub(super) use self::appearance::{check_bar, check_legend, draw_annotations, write_bar};
+pub(super) use self::args::RenderArgs;
 use self::checkpoint_writer::CheckpointWriter;
 use self::files::files;
+use self::image::render_image;
+use self::invocation::Invocation;
 pub(super) use self::job::{Job, check_alpha};
 pub(super) use self::layers::alpha;
 pub(super) use self::metadata::{Subject, push_denoised, push_error};
-use self::notices::Notices;
-use self::prepare::Prepared;
-pub(super) use self::prepare::{PlacedScene, frame_number};
+#[cfg(test)]
+pub(super) use self::prepare::PlacedScene;
+pub(super) use self::prepare::frame_number;
 use self::resume::Resumed;
-use self::summary::Summary;
 pub(super) use self::summary::warnings;
-use self::terminal::Terminal;
-use self::video::Video;
-use super::args::RenderArgs;
 use super::failure::Failure;
-use super::invocation::Invocation;
-use super::progress::Meter;
-use super::write_file::write_file;
-use super::{output, picture_file, processor, signals};
-use spherule_render::denoise::{Denoiser, Judged};
-use spherule_render::film::Film;
-use spherule_render::overlay::{Canvas, Matte};
-use spherule_render::render::{End, Judge, Options, Render, RenderError, ResumableRender};
-use spherule_render::scene::Scene;
+use super::{output, picture_file, processor};
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
 
-/// Result of a render, complete or not.
-struct Traced {
-    render: ResumableRender,
-    /// The denoised image, and its error.
-    judged: Option<Judged>,
-    /// Exit code, if a signal ended it.
-    signal: Option<u8>,
-    /// Command that resumes it, if a checkpoint was written.
-    resume_command: Option<String>,
-}
-
-/// Renders, writes the image, and prints a summary.
-pub(super) fn run(mut args: RenderArgs) -> Result<ExitCode, Failure> {
+/// Renders, writes the image, and prints a summary; `program` is the definition of the program.
+pub(super) fn run(mut args: RenderArgs, program: &clap::Command) -> Result<ExitCode, Failure> {
     args.memory.apply();
     // Only files of unfinished renders store the command line.
     let is_stored = args.part.is_given() || args.checkpoints.file().is_some();
-    let mut now = if is_stored { Invocation::of_process() } else { Invocation::default() };
+    let mut now = if is_stored { Invocation::of_process(program) } else { Invocation::default() };
     part::add_checkpoint(&mut args, &mut now.typed)?;
     let Some(path) = &args.checkpoints.resume else {
         files(&args).check()?;
@@ -129,220 +110,4 @@ fn check_stream(args: &RenderArgs) -> Result<(), Failure> {
         );
     }
     picture_file::check_stream("render", &args.output, args.report.json)
-}
-
-/// State shared by the images of a run.
-#[derive(Default)]
-struct Session<'a> {
-    notices: Notices,
-    writer: Option<&'a CheckpointWriter>,
-    /// The video, unless each image has its own file.
-    video: Option<Video>,
-}
-
-fn render_image(
-    job: &Job,
-    writer: Option<&CheckpointWriter>,
-    resumed: Option<Resumed>,
-) -> Result<ExitCode, Failure> {
-    let mut session = Session { writer, ..Session::default() };
-    render_placed(job, PlacedScene::load(job, None)?, &mut session, resumed)
-}
-
-/// Renders the image of a scene, unless it exists and is skipped.
-fn render_placed(
-    job: &Job,
-    placed: PlacedScene,
-    session: &mut Session,
-    resumed: Option<Resumed>,
-) -> Result<ExitCode, Failure> {
-    write_bar(job, placed.legend.as_ref(), placed.scene.settings.height)?;
-    // After a signal, checks are left out: the render is interrupted at once and saved.
-    if resumed.is_none() && signals::end_pause().is_none() && existing::is_up_to_date(job, &placed)
-    {
-        let notify = if job.is_of_sequence() { job.report.verbose } else { !job.report.quiet };
-        session.notices.count_kept(&job.output, notify);
-        return Ok(ExitCode::SUCCESS);
-    }
-    let mut prepared = placed.build(job)?;
-    let unfinished = resumed.map(|resumed| resumed.into_render(job, &prepared)).transpose()?;
-    finish_image(job, &mut prepared, session, unfinished)
-}
-
-fn finish_image(
-    job: &Job,
-    prepared: &mut Prepared,
-    session: &mut Session,
-    unfinished: Option<ResumableRender>,
-) -> Result<ExitCode, Failure> {
-    prepared.report(job, &mut session.notices);
-    let traced = trace(job, prepared, session.writer, unfinished)?;
-    let finished = finish_traced(job, prepared, session, &traced);
-    // A signal while the image is written ends a sequence, too. If something must be saved or removed, the
-    // next image does so: it is interrupted at once. But no input is awaited that may never come.
-    let stream = job.common.as_ref().is_some_and(|common| !common.frames_all);
-    let saves = !stream && (session.writer.is_some() || session.video.is_some());
-    let goes_on = saves && job.place.is_some_and(|place| !place.last);
-    let signal = if goes_on { traced.signal } else { traced.signal.or(signals::release()) };
-    finished?;
-    Ok(signal.map_or(ExitCode::SUCCESS, ExitCode::from))
-}
-
-/// Writes the image or the part.
-fn finish_traced(
-    job: &Job,
-    prepared: &mut Prepared,
-    session: &mut Session,
-    traced: &Traced,
-) -> Result<(), Failure> {
-    if let (Some(part), Some(writer)) = (job.part, session.writer) {
-        return part::finish(job, part, prepared, writer, &traced.render);
-    }
-    if job.is_of_sequence() && !traced.render.is_complete() {
-        let output = job.output.display();
-        output::warn(format_args!("interrupted: {output} is incomplete and is not written"));
-        traced.advise(job);
-        return Ok(());
-    }
-    if traced.render.samples().total == 0 {
-        output::warn("interrupted before the first sample: nothing is written");
-        return Ok(());
-    }
-    let mut render = traced.render.render();
-    if let Some(Judged { denoised: Some(denoised), .. }) = &traced.judged {
-        render.image.clone_from(&denoised.image);
-    }
-    write(job, prepared, session, &mut render, traced.judged.as_ref())?;
-    traced.report(job, prepared, &render);
-    Ok(())
-}
-
-/// Draws overlays, writes the image and its layers, and prints a summary.
-fn write(
-    job: &Job,
-    prepared: &mut Prepared,
-    session: &mut Session,
-    render: &mut Render,
-    judged: Option<&Judged>,
-) -> Result<(), Failure> {
-    let matte = draw_over(job, prepared, session, render)?;
-    let options = metadata::write_options(job, prepared, render, judged);
-    let mut channels = layers::channels(job, prepared, render)?;
-    channels.extend(matte.map(|matte| alpha(&matte, job.format)));
-    if let Some(video) = &mut session.video {
-        video.add(&render.image, &options)?;
-    } else {
-        let file = render.image.encode(job.format, &channels, &options)?;
-        write_file(&job.output, &page::file(job, prepared, file, &options)?)?;
-    }
-    Summary::new(job, prepared, render, judged, &options).report(job.report, &mut session.notices);
-    Ok(())
-}
-
-/// Draws the look and, unless they are vectors on a page, the annotations over an image; returns the matte
-/// of a transparent background.
-fn draw_over(
-    job: &Job,
-    prepared: &mut Prepared,
-    session: &mut Session,
-    render: &mut Render,
-) -> Result<Option<Matte>, Failure> {
-    let Scene { look, annotations, settings, .. } = &prepared.scene;
-    let region = prepared.region;
-    let world = &mut prepared.world;
-    // The looks of interrupted images are finished, too.
-    let never = AtomicBool::new(false);
-    let mut canvas = Canvas::with_look(look, world, settings, region, render, &never)?;
-    if job.page.is_none() {
-        let turns = job.turn.is_some();
-        if !draw_annotations((annotations, look), &prepared.world, &mut canvas, turns) {
-            session.notices.warn(appearance::OVERLAP);
-        }
-    }
-    Ok(canvas.matte)
-}
-
-/// Starts or resumes a render.
-fn trace(
-    job: &Job,
-    prepared: &Prepared,
-    writer: Option<&CheckpointWriter>,
-    unfinished: Option<ResumableRender>,
-) -> Result<Traced, RenderError> {
-    let meter = Meter::new(job.report.quiet || job.report.terminal);
-    let options = Options {
-        tracer: job.tracer,
-        region: Some(prepared.region),
-        statistics: layers::need_statistics(job) || prepared.denoise.is_some(),
-        features: prepared.denoise.is_some(),
-        cancel: Some(signals::stop()),
-        ..Options::default()
-    };
-    signals::catch();
-    let (world, settings) = (&prepared.world, &prepared.scene.settings);
-    let denoiser = prepared
-        .denoise
-        .map(|choice| Denoiser::new(world, settings, &options, choice))
-        .transpose()?;
-    let judge = |film: &Film| denoiser.as_ref()?.noise(world, film, &options);
-    let options = Options { judge: denoiser.is_some().then_some(&judge as &Judge), ..options };
-    let begin = || ResumableRender::begin_part(world, settings, &options, prepared.part.clone());
-    let mut render = unfinished.map_or_else(begin, Ok)?;
-    let caption = writer.map(|_| part::caption(job, prepared)).unwrap_or_default();
-    let mut terminal = job.report.terminal.then(|| Terminal::new(settings));
-    let after = |pause: Option<Duration>| pause.map(|pause| Instant::now() + pause);
-    // Between the images of a sequence, checkpoints are written only when they are due.
-    let last = job.place.is_none_or(|place| place.last);
-    let (signal, kept) = loop {
-        let due = writer.and_then(|writer| writer.due(job.checkpoints));
-        let drawn = after(terminal.as_ref().map(Terminal::pause));
-        let stop = due.into_iter().chain(drawn).min();
-        let show = |progress| {
-            meter.show(progress);
-            if stop.is_some_and(|stop| stop <= Instant::now()) {
-                signals::stop().store(true, Ordering::SeqCst);
-            }
-        };
-        let end = render.run(&prepared.world, &Options { progress: Some(&show), ..options });
-        let signal = signals::end_pause();
-        let ended = end != End::Cancelled || signal.is_some();
-        if let Some(terminal) = &mut terminal {
-            terminal.draw(&render.film().resolve());
-        }
-        let is_due = due.is_some_and(|due| due <= Instant::now());
-        let keep = writer.filter(|_| is_due || ended && (last || end == End::Cancelled));
-        let kept = keep.is_some_and(|writer| writer.save(job, prepared, &caption, &render));
-        if ended {
-            break (signal.filter(|_| end == End::Cancelled), kept);
-        }
-    };
-    meter.finish();
-    let resume_command = writer.filter(|_| kept).map(CheckpointWriter::resume_command);
-    // Also if the render was cancelled.
-    let finishing = Options { cancel: None, ..options };
-    let judged = denoiser.as_ref().and_then(|one| one.judge(world, render.film(), &finishing));
-    Ok(Traced { render, judged, signal, resume_command })
-}
-
-impl Traced {
-    /// Warns of an incomplete image.
-    fn report(&self, job: &Job, prepared: &Prepared, render: &Render) {
-        let output = job.output.display();
-        if !render.complete && prepared.scene.settings.has_target() {
-            output::warn(format_args!("interrupted: {output} is incomplete"));
-        } else if !render.complete {
-            let percent = 100.0 * prepared.taken(render);
-            output::warn(format_args!("interrupted: {output} has {percent:.1} % of the samples"));
-        }
-        if matches!(render.end, End::Cancelled | End::Time) {
-            self.advise(job);
-        }
-    }
-
-    /// Prints the command that resumes the render, if a checkpoint was written.
-    fn advise(&self, job: &Job) {
-        if let Some(resume_command) = self.resume_command.as_ref().filter(|_| !job.report.quiet) {
-            output::note(resume_command);
-        }
-    }
 }

@@ -1,7 +1,7 @@
 //! Notes about options that have no effect.
 
 use super::job::Job;
-use crate::cli::args::option_name;
+use crate::cli::options::settings::option_name;
 use spherule_render::World;
 use spherule_render::graphics;
 use spherule_render::image::{Depth, Format};

@@ -4,13 +4,13 @@
 //! scheduler restarts it.
 
 use super::appearance::OVERLAP;
+use super::args::RenderArgs;
 use super::checkpoint_writer::CheckpointWriter;
+use super::invocation::CommandOptions;
 use super::job::Job;
-use super::layers;
 use super::prepare::Prepared;
-use crate::cli::args::RenderArgs;
-use crate::cli::invocation::CommandOptions;
-use crate::cli::{Failure, output};
+use crate::cli::failure::Failure;
+use crate::cli::output;
 use spherule_render::checkpoint::Caption;
 use spherule_render::film::{Film, Region};
 use spherule_render::layers::{Layer, features};
@@ -71,37 +71,15 @@ pub(super) fn add_checkpoint(
     Ok(())
 }
 
-/// Returns the samples and tiles to render: all, or those of the part.
-pub(super) fn image_part(job: &Job, region: Region, scene: &Scene) -> Result<ImagePart, Failure> {
-    let settings = &scene.settings;
-    let whole = ImagePart::whole(region, settings.spp);
-    let Some(part) = job.part else { return Ok(whole) };
-    let refuse = |message: &dyn std::fmt::Display| Err(Failure::usage("render", message));
-    if settings.has_target() {
-        return refuse(
-            &"--part cannot stop at an error or a time of the whole image; use --until-error none, --time \
-              none and --spp",
-        );
-    }
-    if !scene.look.is_plain() {
-        return refuse(
-            &"--cell, --background transparent, --preset depthcue and outline, and the same in a scene need the whole \
-              image; remove them with --part. The cell of a crystal is left out with --model NAME",
-        );
-    }
-    part.of_image(&whole, job.split).or_else(|error| refuse(&format!("--part: {error}")))
-}
-
 /// Returns the data for merging other than samples, without layers.
 pub(super) fn caption(job: &Job, prepared: &Prepared) -> Caption {
-    let layers = layers::wanted(&job.encoding.layers);
     let title = prepared.title.clone();
     Caption {
         title,
         looks: prepared.looks(job),
         drawn_over: !prepared.scene.look.is_plain(),
         annotations: annotation_drawing(job, prepared).drawing.to_bytes(),
-        layers,
+        layers: job.encoding.wanted_layers(),
         ..Caption::default()
     }
 }

@@ -4,7 +4,7 @@ use super::estimate::Estimate;
 use super::job::{Job, check_alpha};
 use super::notes::notes;
 use super::notices::Notices;
-use super::{metadata, part, visibility};
+use super::visibility;
 use crate::cli::contents::{dropped, found};
 use crate::cli::devices::Attached;
 use crate::cli::failure::Failure;
@@ -50,7 +50,7 @@ pub(super) struct Prepared {
     /// The orientation of the particles, if the scene is of particles.
     orientation: Option<Orientation>,
     /// Settings for particles from a prepared scene, for the image's metadata.
-    looks: Option<Vec<(String, String)>>,
+    pub(super) looks: Option<Vec<(String, String)>>,
     /// Identity of the scene, if the image or a checkpoint records it.
     pub(super) identity: Option<Identity>,
     /// The choice between the denoised and the unfiltered image; `None` if it is not denoised.
@@ -172,7 +172,7 @@ impl PlacedScene {
     /// Builds the world, unless its estimated memory exceeds the limit.
     pub(super) fn build(self, job: &Job) -> Result<Prepared, Failure> {
         let Self { mut scene, legend, orientation, region, identity, denoise, stored, load } = self;
-        let image_part = part::image_part(job, region, &scene)?;
+        let image_part = image_part(job, region, &scene)?;
         let estimate = Estimate::new(&scene, region, job, denoise.is_some())
             .of_tiles(image_part.tiles.len())
             .check()?;
@@ -227,11 +227,6 @@ impl PlacedScene {
 }
 
 impl Prepared {
-    /// Returns the settings for particles, as metadata list them.
-    pub(super) fn looks(&self, job: &Job) -> Vec<(String, String)> {
-        metadata::looks(job, self.looks.as_deref(), self.legend.as_ref(), self.identity.as_ref())
-    }
-
     /// Prints warnings and notes before the render starts.
     pub(super) fn report(&self, job: &Job, notices: &mut Notices) {
         self.warnings.iter().for_each(|text| notices.warn(text));
@@ -284,6 +279,27 @@ fn check_region(job: &Job, scene: &Scene) -> Result<(), Failure> {
     }
     let message = "annotations inside the image need the whole image; remove --region";
     Err(Failure::usage("render", message))
+}
+
+/// Returns the samples and tiles to render: all, or those of the part.
+fn image_part(job: &Job, region: Region, scene: &Scene) -> Result<ImagePart, Failure> {
+    let settings = &scene.settings;
+    let whole = ImagePart::whole(region, settings.spp);
+    let Some(part) = job.part else { return Ok(whole) };
+    let refuse = |message: &dyn std::fmt::Display| Err(Failure::usage("render", message));
+    if settings.has_target() {
+        return refuse(
+            &"--part cannot stop at an error or a time of the whole image; use --until-error none, --time \
+              none and --spp",
+        );
+    }
+    if !scene.look.is_plain() {
+        return refuse(
+            &"--cell, --background transparent, --preset depthcue and outline, and the same in a scene need the whole \
+              image; remove them with --part. The cell of a crystal is left out with --model NAME",
+        );
+    }
+    part.of_image(&whole, job.split).or_else(|error| refuse(&format!("--part: {error}")))
 }
 
 /// Completes the settings, and returns how the image is denoised, if at all. `spheres` is the number of spheres, which

@@ -1,11 +1,11 @@
 //! `--prepare`: writes a scene with its acceleration structure to a file.
 
+use super::appearance::write_bar;
+use super::args::RenderArgs;
 use super::job::Job;
 use super::metadata;
 use super::notices::Notices;
 use super::prepare::{PlacedScene, Prepared};
-use super::write_bar;
-use crate::cli::args::RenderArgs;
 use crate::cli::contents::spheres;
 use crate::cli::failure::Failure;
 use crate::cli::output;
@@ -52,19 +52,5 @@ pub(super) fn refuse_sequence(args: &RenderArgs) -> Result<(), Failure> {
         return Ok(());
     }
     let message = "--prepare takes one scene; give --frame one frame";
-    Err(Failure::usage("render", message))
-}
-
-/// Rejects options that would change a prepared scene.
-pub(super) fn refuse_changes(args: &RenderArgs) -> Result<(), Failure> {
-    let none = args.looks.list(None).is_empty() && args.looks.color_bar.is_none();
-    let none = none && args.slices.list().is_empty() && args.style.list().is_empty();
-    let none = none && args.views.list().is_empty() && args.annotations.is_empty();
-    let none = none && !args.is_sequence();
-    if args.prepare.is_none() && none && !args.particles.any() {
-        return Ok(());
-    }
-    let message = "spheres, materials, camera and annotations of a prepared scene are fixed; use the file it was made \
-                   from, or remove options that change them";
     Err(Failure::usage("render", message))
 }

@@ -1,13 +1,12 @@
 //! Resuming of renders from checkpoints.
 
+use super::args::RenderArgs;
+use super::invocation::{CommandOptions, Invocation};
 use super::job::Job;
-use super::layers;
 use super::prepare::Prepared;
-use crate::cli::args::RenderArgs;
 use crate::cli::failure::Failure;
-use crate::cli::invocation::{CommandOptions, Invocation, render_command};
 use crate::cli::settings::region_text;
-use clap::{ArgMatches, FromArgMatches};
+use clap::{ArgMatches, Command, FromArgMatches};
 use spherule_render::checkpoint::{self, Origin};
 use spherule_render::render::ResumableRender;
 use spherule_render::scene::Settings;
@@ -29,14 +28,15 @@ impl Resumed {
         now: Invocation,
     ) -> Result<(Self, RenderArgs, Invocation), Failure> {
         let (origin, render) = checkpoint::read(path)?;
-        let command = render_command();
-        let then = CommandOptions::of(&command, &parse(origin.arguments.clone())?);
+        let command = now.command;
+        let then = CommandOptions::of(&command, &parse(&command, origin.arguments.clone())?);
         let folder = PathBuf::from(&origin.folder);
         // If the folder does not exist any more, the files may have moved to the current one.
         let found = if folder.is_dir() { then.clone().relative_to(&folder) } else { then.clone() };
-        let matches = parse(found.with(now.typed.clone()).arguments(&command))?;
+        let matches = parse(&command, found.with(now.typed.clone()).arguments(&command))?;
         let args = RenderArgs::from_arg_matches(&matches).map_err(Failure::Arguments)?;
-        let given = Invocation { folder, typed: then.with(now.typed.relative_to(&now.folder)) };
+        let typed = then.with(now.typed.relative_to(&now.folder));
+        let given = Invocation { command, folder, typed };
         Ok((Self { path: path.to_owned(), origin, render }, args, given))
     }
 
@@ -83,7 +83,7 @@ impl Resumed {
                  before, or delete the file"
             ));
         }
-        if layers::need_statistics(job) && !self.render.statistics() {
+        if job.encoding.needs_statistics() && !self.render.statistics() {
             let why = "--layers variance and samples need statistics from the start of the render; remove \
                        them";
             return Some(why.to_owned());
@@ -96,7 +96,7 @@ impl Resumed {
     }
 }
 
-fn parse(arguments: Vec<OsString>) -> Result<ArgMatches, Failure> {
+fn parse(command: &Command, arguments: Vec<OsString>) -> Result<ArgMatches, Failure> {
     let line = std::iter::once(OsString::from("render")).chain(arguments);
-    render_command().try_get_matches_from(line).map_err(Failure::Arguments)
+    command.clone().try_get_matches_from(line).map_err(Failure::Arguments)
 }

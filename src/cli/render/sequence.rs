@@ -7,16 +7,15 @@ mod frame_reader;
 mod plan;
 
 use self::frame_reader::FrameReader;
-use self::plan::{Frames, Plan, Shot};
+use self::plan::{Frames, Plan, Shot, stream_name};
 use super::checkpoint_writer::CheckpointWriter;
-use super::job::{Job, Place};
+use super::image::{Session, render_placed};
+use super::job::{Common, Job, Place};
 use super::numbered_names::numbered;
 use super::prepare::PlacedScene;
 use super::resume::Resumed;
-pub(in crate::cli) use super::survey::Common;
 use super::survey::Survey;
 use super::video::Video;
-use super::{Session, render_placed};
 use crate::cli::appearance::BarPlace;
 use crate::cli::contents::plural;
 use crate::cli::failure::Failure;
@@ -24,7 +23,6 @@ use crate::cli::files::Files;
 use crate::cli::output;
 use crate::cli::picture_file;
 use crate::cli::source::Source;
-use spherule_render::scene::FileError;
 use spherule_render::scene::particles::{Coloring, Particles, ReadOptions};
 use spherule_render::split::Part;
 use std::path::Path;
@@ -185,11 +183,6 @@ fn print_framing(job: &Job, plan: &Plan) {
     }
 }
 
-/// Returns the name of input that can be read only once, for messages.
-fn stream_name(path: &Path) -> String {
-    if path.as_os_str() == "-" { "standard input".to_owned() } else { path.display().to_string() }
-}
-
 /// Images that are rendered one after another.
 struct Sequence<'a> {
     job: Job<'a>,
@@ -329,9 +322,4 @@ impl Sequence<'_> {
 /// The color bar of all images.
 fn inside(bar: Option<&BarPlace>) -> Option<&BarPlace> {
     bar.filter(|bar| matches!(bar, BarPlace::Inside(_)))
-}
-
-/// An error of a whole file, before anything is rendered.
-fn refuse(path: &Path, message: String, help: String) -> Failure {
-    FileError::whole_file(path, message).with_help(help).into()
 }

@@ -1,7 +1,7 @@
 //! Survey of a sequence before rendering: the camera, the color range and the guessed radius, which all
 //! images share.
 
-use super::job::Job;
+use super::job::{Common, Job};
 use super::prepare::stage;
 use crate::cli::contents::plural;
 use crate::cli::failure::Failure;
@@ -14,14 +14,6 @@ use spherule_render::scene::particles::{
 use spherule_render::world::WorldError;
 use spherule_render::world::framing::SequenceBounds;
 use std::path::Path;
-
-/// Properties shared by all images of a sequence.
-#[derive(Clone)]
-pub(in crate::cli) struct Common {
-    pub(in crate::cli) shared: Shared,
-    /// True if the camera is placed for all images, and not only for the first.
-    pub(in crate::cli) frames_all: bool,
-}
 
 /// Results of the survey, with memory independent of the number of frames.
 #[derive(Default)]

@@ -1,6 +1,6 @@
 //! Arguments of `spherule view`.
 
-use crate::cli::args::RenderArgs;
+use crate::cli::render::RenderArgs;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Parser)]

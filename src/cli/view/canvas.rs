@@ -1,7 +1,7 @@
 //! Contents of the window: the image, with lines, color bar and text over it.
 
 use super::colorbar;
-use super::font::{SizedFont, Surface};
+use super::font::{ACCENT, LIGHT, PAPER, SizedFont, Surface};
 use super::help::Layout;
 use super::image::Picture;
 use super::loading::Loading;
@@ -11,11 +11,6 @@ use super::viewer::Viewer;
 use super::wrap::{flow, wrap};
 use indicatif::HumanCount;
 use spherule_render::scene::Settings;
-
-/// Colors of text and of its background.
-pub(super) const PAPER: u32 = 0x0018_181C;
-pub(super) const LIGHT: u32 = 0x00E6_E6E6;
-pub(super) const ACCENT: u32 = 0x00FF_C85A;
 
 /// Opacity of the background of text.
 const COVER: f32 = 0.9;

@@ -1,7 +1,6 @@
 //! The color bar of the window.
 
-use super::canvas::{LIGHT, PAPER};
-use super::font::{SizedFont, Surface};
+use super::font::{LIGHT, PAPER, SizedFont, Surface};
 use super::wrap::wrap;
 use spherule_render::color::{Rgb, Tick, ticks};
 use spherule_render::image::tone::srgb_encode;

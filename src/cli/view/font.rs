@@ -7,6 +7,11 @@
 use ab_glyph::{Font, FontRef, PxScale, point};
 use std::collections::HashMap;
 
+/// Colors of text and of its background.
+pub(super) const PAPER: u32 = 0x0018_181C;
+pub(super) const LIGHT: u32 = 0x00E6_E6E6;
+pub(super) const ACCENT: u32 = 0x00FF_C85A;
+
 /// X-height in pixels at a display scale of 1, and the minimum.
 const X_HEIGHT: f64 = 7.0;
 const LEAST: f64 = 5.0;

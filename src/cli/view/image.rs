@@ -1,7 +1,6 @@
 //! Render requests of the viewer, and their images.
 
 use super::frame_rate::Moving;
-use super::overlay::OverlaidImage;
 use super::tonemap::{DisplaySettings, ToneMapped};
 use spherule_render::image::Image;
 use spherule_render::noise::Noise;
@@ -55,6 +54,14 @@ pub(super) struct Picture {
     /// Rays of the last samples, and their time.
     pub(super) rays: u64,
     pub(super) elapsed: Duration,
+}
+
+/// An image with overlays.
+#[derive(Clone, Debug)]
+pub(super) struct OverlaidImage {
+    pub(super) image: Image,
+    /// The part of each pixel that is not background, with premultiplied colors; `None` for an opaque image.
+    pub(super) matte: Option<Matte>,
 }
 
 impl Picture {

@@ -1,20 +1,12 @@
 //! Overlays of the viewer, as in `spherule render`, with reuse of the last image's layers.
 
-use super::image::RenderRequest;
+use super::image::{OverlaidImage, RenderRequest};
 use spherule_render::World;
 use spherule_render::film::Region;
 use spherule_render::image::Image;
 use spherule_render::layers::ProgressiveLayers;
-use spherule_render::overlay::{GroundRender, Matte, Overlay, RunBounds, settings_of_layers};
+use spherule_render::overlay::{GroundRender, Overlay, RunBounds, settings_of_layers};
 use spherule_render::render::{Options, RenderError};
-
-/// An image with overlays.
-#[derive(Clone, Debug)]
-pub(super) struct OverlaidImage {
-    pub(super) image: Image,
-    /// The part of each pixel that is not background, with premultiplied colors; `None` for an opaque image.
-    pub(super) matte: Option<Matte>,
-}
 
 /// Cached layers of a world and its camera.
 #[derive(Default)]

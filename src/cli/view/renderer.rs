@@ -2,9 +2,9 @@
 
 use super::camera_control::CameraControl;
 use super::digits;
-use super::image::{Picture, Quality, RenderRequest};
+use super::image::{OverlaidImage, Picture, Quality, RenderRequest};
 use super::load::{LoadedScene, columns};
-use super::overlay::{OverlaidImage, OverlayCache};
+use super::overlay::OverlayCache;
 use super::tonemap::{ToneMapped, ToneMapper};
 use crate::cli::failure::Failure;
 use crate::cli::output;

@@ -1,12 +1,7 @@
-//! Cameras: what is up, views from a side, projections and turntables.
+//! Values of the options for cameras.
 
-use super::ViewArgs;
-use spherule_render::compose::CameraRequest;
 use spherule_render::scene::Axis;
-use spherule_render::scene::particles::{Orientation, UpReason};
 use spherule_render::suggest;
-use spherule_render::world::framing::view::View;
-use std::f64::consts::TAU;
 
 /// The direction that is up, or `auto`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,36 +29,6 @@ pub(super) fn up(text: &str) -> Result<UpArg, String> {
 pub(super) fn margin(text: &str) -> Result<f64, String> {
     let share = text.parse().ok().filter(|share| (0.0..=0.9).contains(share));
     share.ok_or_else(|| "give a fraction of the image from 0 to 0.9, as in 0.05".to_owned())
-}
-
-impl ViewArgs {
-    /// Returns the direction that is up, if one is chosen.
-    pub(in crate::cli) fn up(&self) -> Option<Axis> {
-        self.up.and_then(|up| up.0)
-    }
-
-    /// Returns the view that is asked for.
-    pub(in crate::cli) fn camera(&self) -> CameraRequest {
-        let Self { view, projection, margin, turntable, .. } = *self;
-        CameraRequest { view, projection, margin, turns: turntable.is_some() }
-    }
-
-    /// Returns a sentence on what is up and why; `None` if the view does not depend on it.
-    pub(in crate::cli) fn explain_up(&self, orientation: &Orientation) -> Option<String> {
-        let reason = orientation.reason;
-        let up = match self.view {
-            Some(View::Auto) if !reason.is_evident() => return None,
-            Some(View::Iso | View::Side(_)) => orientation.up_of_sides(),
-            Some(View::Auto) | None => orientation.up,
-        };
-        let chosen = reason == UpReason::Chosen;
-        (!chosen).then(|| format!("{} is up: {reason}; --up chooses another direction", up.name()))
-    }
-
-    /// Angle of an image of the turntable, in radians.
-    pub(in crate::cli) fn angle(&self, turn: u32) -> f64 {
-        TAU * f64::from(turn) / f64::from(self.turntable.unwrap_or(1))
-    }
 }
 
 #[cfg(test)]

@@ -8,14 +8,16 @@ mod style;
 use self::camera::UpArg;
 use self::lens::LensArgs;
 pub(super) use self::style::StyleArgs;
+use super::failure::Failure;
 use super::names::{self, Names};
 use super::settings::List;
 use clap::value_parser;
 use serde_json::json;
-use spherule_render::compose::LensRequest;
-use spherule_render::scene::particles::Orientation;
+use spherule_render::compose::{CameraRequest, CellRequest, LensRequest};
+use spherule_render::scene::particles::{Orientation, UpReason};
 use spherule_render::scene::{Axis, Camera, Projection, Scene};
 use spherule_render::world::framing::view::{self, View};
+use std::f64::consts::TAU;
 
 /// Projections, with their default parameters.
 const PROJECTIONS: Names<Projection> = Names(&[
@@ -129,5 +131,47 @@ impl ViewArgs {
     /// Returns whether a focus is given that the scene's camera ignores.
     pub(super) fn has_idle_focus(&self, scene: &Scene) -> bool {
         self.lens.is_idle(scene)
+    }
+
+    /// Rejects options that apply only to particle files.
+    pub(super) fn refuse_cells(&self) -> Result<(), Failure> {
+        if self.needs_cell() {
+            let message = "--wrap, --replicate and --cell need a particle file";
+            return Err(Failure::usage("render", message));
+        }
+        Ok(())
+    }
+
+    /// Returns what is done to the cell.
+    pub(super) fn cell(&self) -> CellRequest {
+        CellRequest { wrap: self.wrap, copies: self.replicate, show: self.cell }
+    }
+
+    /// Returns the direction that is up, if one is chosen.
+    pub(super) fn up(&self) -> Option<Axis> {
+        self.up.and_then(|up| up.0)
+    }
+
+    /// Returns the view that is asked for.
+    pub(super) fn camera(&self) -> CameraRequest {
+        let Self { view, projection, margin, turntable, .. } = *self;
+        CameraRequest { view, projection, margin, turns: turntable.is_some() }
+    }
+
+    /// Returns a sentence on what is up and why; `None` if the view does not depend on it.
+    pub(super) fn explain_up(&self, orientation: &Orientation) -> Option<String> {
+        let reason = orientation.reason;
+        let up = match self.view {
+            Some(View::Auto) if !reason.is_evident() => return None,
+            Some(View::Iso | View::Side(_)) => orientation.up_of_sides(),
+            Some(View::Auto) | None => orientation.up,
+        };
+        let chosen = reason == UpReason::Chosen;
+        (!chosen).then(|| format!("{} is up: {reason}; --up chooses another direction", up.name()))
+    }
+
+    /// Angle of an image of the turntable, in radians.
+    pub(super) fn angle(&self, turn: u32) -> f64 {
+        TAU * f64::from(turn) / f64::from(self.turntable.unwrap_or(1))
     }
 }

@@ -1,8 +1,4 @@
-//! Wrapping and replication of periodic cells.
-
-use super::ViewArgs;
-use crate::cli::failure::Failure;
-use spherule_render::compose::CellRequest;
+//! Numbers of copies of a periodic cell.
 
 /// `NA,NB,NC`.
 pub(super) fn copies(text: &str) -> Result<[u32; 3], String> {
@@ -11,22 +7,6 @@ pub(super) fn copies(text: &str) -> Result<[u32; 3], String> {
         .and_then(|counts| <[u32; 3]>::try_from(counts).ok())
         .filter(|counts| !counts.contains(&0))
         .ok_or_else(|| "give three integers of at least 1, as in 2,2,1".to_owned())
-}
-
-impl ViewArgs {
-    /// Rejects options that apply only to particle files.
-    pub(in crate::cli) fn refuse_cells(&self) -> Result<(), Failure> {
-        if self.needs_cell() {
-            let message = "--wrap, --replicate and --cell need a particle file";
-            return Err(Failure::usage("render", message));
-        }
-        Ok(())
-    }
-
-    /// Returns what is done to the cell.
-    pub(in crate::cli) fn cell(&self) -> CellRequest {
-        CellRequest { wrap: self.wrap, copies: self.replicate, show: self.cell }
-    }
 }
 
 #[cfg(test)]

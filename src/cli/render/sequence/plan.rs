@@ -1,6 +1,5 @@
 //! Plan of a sequence: the list of its images.
 
-use super::{refuse, stream_name};
 use crate::cli::failure::Failure;
 use crate::cli::frames::FrameRange;
 use spherule_render::scene::FileError;
@@ -183,6 +182,16 @@ impl Plan {
         let message = format!("{name} has no frame {last}, only {passed} (the first is 0)");
         Err(refuse(path, message, hint(*range, passed)))
     }
+}
+
+/// Returns the name of input that can be read only once, for messages.
+pub(super) fn stream_name(path: &Path) -> String {
+    if path.as_os_str() == "-" { "standard input".to_owned() } else { path.display().to_string() }
+}
+
+/// An error of a whole file, before anything is rendered.
+fn refuse(path: &Path, message: String, help: String) -> Failure {
+    FileError::whole_file(path, message).with_help(help).into()
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Images in half blocks: the upper pixel is a character's foreground color, the lower one its background
 //! color.
 
-use super::Codes;
+use super::codes::Codes;
 
 /// Levels of each channel in the cube of 256 colors (xterm's).
 const LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];

@@ -1,6 +1,6 @@
 //! Inline PNG images, for Kitty and iTerm.
 
-use super::Codes;
+use super::codes::Codes;
 use spherule_render::graphics::base64;
 use spherule_render::image::{Compression, encode_codes};
 

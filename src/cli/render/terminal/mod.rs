@@ -2,10 +2,13 @@
 //! else in half blocks with two pixels per character.
 
 mod blocks;
+mod codes;
 mod inline;
 mod probe;
 mod sixels;
 
+use self::codes::Codes;
+use self::probe::{Protocol, Screen};
 use crate::cli::failure::Failure;
 use crate::cli::output;
 use spherule_render::image::Image;
@@ -16,38 +19,6 @@ use std::time::{Duration, Instant};
 
 /// Minimum time between two updates: a duration, and a multiple of the time of the last update.
 const PAUSE: (Duration, u32) = (Duration::from_millis(250), 20);
-
-/// Protocols for images in a terminal.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Protocol {
-    /// Images of the Kitty graphics protocol.
-    Kitty,
-    /// Inline images of iTerm2.
-    Iterm,
-    /// DEC's sixels.
-    Sixels,
-    /// Half blocks, in 24-bit color or else in 256 colors.
-    Blocks { true_color: bool },
-}
-
-/// The size of a terminal.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Screen {
-    /// Cells.
-    columns: u32,
-    /// Cells.
-    rows: u32,
-    /// Width and height of a cell, in pixels.
-    cell: [u32; 2],
-}
-
-/// An image of 8-bit display values.
-struct Codes {
-    width: u32,
-    height: u32,
-    /// Red, green and blue, row by row.
-    pixels: Vec<[u8; 3]>,
-}
 
 /// An area of the terminal in which images are drawn.
 pub(super) struct Terminal {
@@ -124,12 +95,12 @@ impl Terminal {
         text.extend(format!("\x1b[{rows}A\r").bytes());
         match self.protocol {
             Protocol::Blocks { true_color } => {
-                let codes = self.codes(image, [columns, 2 * rows]);
+                let codes = Codes::of(image, &self.table, [columns, 2 * rows]);
                 text.extend(blocks::text(&codes, true_color));
             }
             protocol => {
                 let [width, height] = self.screen.cell;
-                let codes = self.codes(image, [columns * width, rows * height]);
+                let codes = Codes::of(image, &self.table, [columns * width, rows * height]);
                 // Restore the cursor, because terminals differ in where they leave it.
                 text.extend(b"\x1b7");
                 text.extend(match protocol {
@@ -142,33 +113,6 @@ impl Terminal {
         }
         (text, rows)
     }
-
-    /// Converts an image to display values, reduced to at most this many pixels.
-    fn codes(&self, image: &Image, [columns, rows]: [u32; 2]) -> Codes {
-        let (width, height) = (columns.min(image.width), rows.min(image.height));
-        let code = |pixel: [f32; 3]| pixel.map(|value| self.table.code(value));
-        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-        let pixels = pixels.map(|(x, y)| code(mean(image, x, y, width, height))).collect();
-        Codes { width, height, pixels }
-    }
-}
-
-/// Mean radiance of the image over pixel (x, y) of a smaller one with `width` x `height` pixels.
-fn mean(image: &Image, x: u32, y: u32, width: u32, height: u32) -> [f32; 3] {
-    let range = |at: u32, small: u32, large: u32| {
-        let edge = |at: u32| (u64::from(at) * u64::from(large) / u64::from(small)) as u32;
-        edge(at)..edge(at + 1).max(edge(at) + 1)
-    };
-    let (columns, rows) = (range(x, width, image.width), range(y, height, image.height));
-    let mut sum = [0.0; 3];
-    let mut count = 0.0;
-    for row in rows {
-        for pixel in columns.clone().filter_map(|column| image.pixel(column, row)) {
-            (0..3).for_each(|channel| sum[channel] += pixel[channel]);
-            count += 1.0;
-        }
-    }
-    sum.map(|value| value / f32::max(count, 1.0))
 }
 
 /// Columns and rows of cells for an image: as many as the terminal has, except for one line for the prompt,
@@ -210,15 +154,6 @@ mod tests {
         }
         let tiny = Screen { columns: 0, rows: 0, ..SCREEN };
         assert_eq!(fit([800, 600], tiny), [1, 1]);
-    }
-
-    #[test]
-    fn smaller_pictures_are_means() {
-        let mut image = Image::filled(4, 2, [0.0; 3]).expect("a picture");
-        (image.pixels[0], image.pixels[5]) = ([1.0; 3], [1.0, 0.0, 0.0]);
-        assert_eq!(mean(&image, 0, 0, 2, 1), [0.5, 0.25, 0.25]);
-        assert_eq!(mean(&image, 1, 0, 2, 1), [0.0; 3]);
-        assert_eq!(mean(&image, 1, 1, 4, 2), [1.0, 0.0, 0.0]);
     }
 
     #[test]

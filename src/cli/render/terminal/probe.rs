@@ -1,6 +1,28 @@
 //! Detection of the terminal's image protocol and size, by a query or from the environment.
 
-use super::{Protocol, Screen};
+/// Protocols for images in a terminal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Protocol {
+    /// Images of the Kitty graphics protocol.
+    Kitty,
+    /// Inline images of iTerm2.
+    Iterm,
+    /// DEC's sixels.
+    Sixels,
+    /// Half blocks, in 24-bit color or else in 256 colors.
+    Blocks { true_color: bool },
+}
+
+/// The size of a terminal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Screen {
+    /// Cells.
+    pub(super) columns: u32,
+    /// Cells.
+    pub(super) rows: u32,
+    /// Width and height of a cell, in pixels.
+    pub(super) cell: [u32; 2],
+}
 
 /// A query for Kitty's protocol, and one for the terminal's attributes, which every terminal answers and so
 /// marks the end of the answers.

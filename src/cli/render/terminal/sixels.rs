@@ -2,7 +2,7 @@
 //!
 //! Digital Equipment Corporation, "VT330/VT340 Programmer Reference Manual", volume 2, chapter 14.
 
-use super::Codes;
+use super::codes::Codes;
 use std::fmt::Write;
 
 /// Levels of red, green and blue in the palette: 252 colors, of the 256 that terminals have.

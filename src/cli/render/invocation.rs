@@ -1,10 +1,9 @@
 //! The options of a command line, stored in checkpoints and combined with later ones by `--resume`.
 
-use super::appearance::BarPlace;
-use super::args::Args;
-use super::command_line::command_line;
+use crate::cli::appearance::BarPlace;
+use crate::cli::command_line::command_line;
 use clap::parser::ValueSource;
-use clap::{Arg, ArgMatches, Command, CommandFactory};
+use clap::{Arg, ArgMatches, Command};
 use std::env;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
@@ -19,9 +18,9 @@ const PATHS: [&str; 3] = ["scene", "output", "color_bar"];
 /// The option that is always stored: the output file.
 const ALWAYS_STORED: &str = "output";
 
-/// The definition of `spherule render`.
-pub(super) fn render_command() -> Command {
-    let mut program = Args::command();
+/// Returns the definition of `spherule render`.
+fn render_command(program: &Command) -> Command {
+    let mut program = program.clone();
     program.build();
     program.find_subcommand("render").cloned().unwrap_or(program)
 }
@@ -30,29 +29,29 @@ pub(super) fn render_command() -> Command {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct CommandOptions(Vec<(String, Vec<OsString>)>);
 
-/// A command line, and the folder in which it was run.
+/// A command line of `spherule render`, and the folder in which it was run.
 #[derive(Default)]
 pub(super) struct Invocation {
+    /// The definition of the command.
+    pub(super) command: Command,
     pub(super) folder: PathBuf,
     pub(super) typed: CommandOptions,
 }
 
 impl Invocation {
-    /// The command line of this process.
-    pub(super) fn of_process() -> Self {
-        Self { folder: env::current_dir().unwrap_or_default(), typed: CommandOptions::of_process() }
+    /// The command line of this process, which is one of `program`.
+    pub(super) fn of_process(program: &Command) -> Self {
+        let command = render_command(program);
+        let folder = env::current_dir().unwrap_or_default();
+        let line = command_line(program).unwrap_or_default();
+        let matches = program.clone().try_get_matches_from(line).ok();
+        let matches = matches.and_then(|mut all| all.remove_subcommand());
+        let typed = matches.map(|(_, matches)| CommandOptions::of(&command, &matches));
+        Self { command, folder, typed: typed.unwrap_or_default() }
     }
 }
 
 impl CommandOptions {
-    /// Returns the options of this process if it runs `spherule render`.
-    fn of_process() -> Self {
-        let line = command_line().unwrap_or_default();
-        let matches = Args::command().try_get_matches_from(line);
-        let matches = matches.ok().and_then(|mut all| all.remove_subcommand());
-        matches.map_or(Self(Vec::new()), |(_, matches)| Self::of(&render_command(), &matches))
-    }
-
     /// Returns the options that are on the command line of a command.
     pub(super) fn of(command: &Command, matches: &ArgMatches) -> Self {
         let typed = |arg: &&Arg| {
@@ -137,6 +136,12 @@ fn option(name: &str, value: &OsStr) -> OsString {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::args::Args;
+    use clap::CommandFactory;
+
+    fn render_command() -> Command {
+        super::render_command(&Args::command())
+    }
 
     fn typed(arguments: &[&str]) -> CommandOptions {
         CommandOptions::of(&render_command(), &matches(arguments))

@@ -5,26 +5,26 @@ use clap::ValueEnum;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
-pub(in crate::cli) struct FieldArgs {
+pub(in crate::cli) struct Args {
     /// Kind of scene
     #[arg(value_enum, default_value_t = Kind::Field)]
-    pub(in crate::cli) kind: Kind,
+    pub(super) kind: Kind,
     /// Output scene, a name that ends in .toml; the spheres are written to a .csv file of the same name
     #[arg(short, long, value_name = "FILE.toml")]
-    pub(in crate::cli) output: PathBuf,
+    pub(super) output: PathBuf,
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 0)]
-    pub(in crate::cli) seed: u64,
+    pub(super) seed: u64,
     /// Print only errors
     #[arg(short, long)]
-    pub(in crate::cli) quiet: bool,
+    pub(super) quiet: bool,
     #[command(flatten)]
-    pub(in crate::cli) parameters: ParameterArgs,
+    pub(super) parameters: ParameterArgs,
 }
 
 /// Kinds of generated scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum Kind {
+pub(super) enum Kind {
     /// N x N equal spheres on a plane
     Grid,
     /// N x N random spheres on a plane, as `spherule render` shows without a scene
@@ -42,31 +42,31 @@ pub(in crate::cli) enum Kind {
 /// Parameters of the generators; each applies to some of the kinds.
 #[derive(Debug, Default, clap::Args)]
 #[command(next_help_heading = "Parameters [default for each kind]")]
-pub(in crate::cli) struct ParameterArgs {
+pub(super) struct ParameterArgs {
     /// grid, field: spheres along each side [20]; volume: spheres [10000]; lattice: cells along
     /// each edge [10]
     #[arg(long, value_name = "N")]
-    pub(in crate::cli) count: Option<u64>,
+    pub(super) count: Option<u64>,
     /// grid [0.4], lattice, sphereflake [0.5]: radius of all spheres; field [0.1,0.45], volume: minimum and
     /// maximum radius
     #[arg(long, value_name = "R|MIN,MAX", allow_hyphen_values = true, value_parser = values::radii)]
-    pub(in crate::cli) radius: Option<Radii>,
+    pub(super) radius: Option<Radii>,
     /// grid: distance between neighboring centers [1]
     #[arg(long, value_name = "DISTANCE", value_parser = values::finite)]
-    pub(in crate::cli) spacing: Option<f64>,
+    pub(super) spacing: Option<f64>,
     /// field: fractions of diffuse, metal and glass spheres [0.68,0.2,0.12]
     #[arg(long, value_name = "D,M,G", allow_hyphen_values = true, value_parser = values::mix)]
-    pub(in crate::cli) mix: Option<[f64; 3]>,
+    pub(super) mix: Option<[f64; 3]>,
     /// field [true], volume [false]: give each sphere its own color
     #[arg(long, value_name = "BOOL")]
-    pub(in crate::cli) colors: Option<bool>,
+    pub(super) colors: Option<bool>,
     /// volume: edge length of the cube [the cube root of N]
     #[arg(long, value_name = "LENGTH", value_parser = values::finite)]
-    pub(in crate::cli) size: Option<f64>,
+    pub(super) size: Option<f64>,
     /// lattice: standard deviation of the thermal displacement, in nearest-neighbor distances [0]
     #[arg(long, value_name = "DEVIATION", value_parser = values::finite)]
-    pub(in crate::cli) jitter: Option<f64>,
+    pub(super) jitter: Option<f64>,
     /// sphereflake: recursion depth [4]
     #[arg(long, value_name = "N")]
-    pub(in crate::cli) level: Option<u32>,
+    pub(super) level: Option<u32>,
 }

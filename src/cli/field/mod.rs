@@ -1,9 +1,12 @@
 //! `spherule field`: writes a generated scene.
 
-use super::args::{FieldArgs, Kind, ParameterArgs};
+mod args;
+mod scene;
+
+pub(super) use self::args::Args;
+use self::args::{Kind, ParameterArgs};
 use super::contents::spheres;
 use super::failure::Failure;
-use super::field_scene;
 use super::files::Files;
 use super::output;
 use super::values::Radii;
@@ -16,7 +19,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 /// Generates the scene and writes it.
-pub(super) fn run(args: &FieldArgs) -> Result<ExitCode, Failure> {
+pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     check_name(&args.output)?;
     let columns = args.output.with_extension("csv");
     let mut files = Files::new("field");
@@ -24,7 +27,7 @@ pub(super) fn run(args: &FieldArgs) -> Result<ExitCode, Failure> {
     files.writes("the spheres of --output", &columns);
     files.check()?;
     let generator = args.parameters.generator(args.kind)?;
-    let scene = field_scene::scene(&generator, args.seed)?;
+    let scene = scene::scene(&generator, args.seed)?;
     write(&scene, &args.output)?;
     if !args.quiet {
         let count = spheres(scene.spheres.len() as u64);

@@ -43,6 +43,20 @@ pub(in crate::cli) struct EncodingArgs {
     pub(in crate::cli) layers: Vec<Option<Layer>>,
 }
 
+impl EncodingArgs {
+    /// Returns the requested layers without repetition; all if one is `None`.
+    pub(in crate::cli) fn wanted_layers(&self) -> Vec<Layer> {
+        let typed = &self.layers;
+        let all = typed.contains(&None);
+        Layer::ALL.into_iter().filter(|layer| all || typed.contains(&Some(*layer))).collect()
+    }
+
+    /// Returns whether a requested layer needs statistics of the render.
+    pub(in crate::cli) fn needs_statistics(&self) -> bool {
+        self.wanted_layers().into_iter().any(Layer::is_statistic)
+    }
+}
+
 /// Performance settings, which never change the image.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Performance (never changes the image)")]
@@ -84,4 +98,40 @@ pub(in crate::cli) struct ReportArgs {
     /// Also show the image in the terminal while it refines
     #[arg(long, conflicts_with = "json")]
     pub(in crate::cli) terminal: bool,
+}
+
+/// Help of the option that names the output image.
+pub(in crate::cli) fn picture_help() -> String {
+    format!(
+        "Output image: a name that ends in {}, or - for standard output",
+        Format::written_suffixes()
+    )
+}
+
+/// Help of an argument that names an input image.
+pub(in crate::cli) fn read_help() -> String {
+    format!("Image: {}", Format::read_names())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        encoding: EncodingArgs,
+    }
+
+    #[test]
+    fn layers_are_unique_and_in_order() {
+        let wanted = |words: &[&str]| {
+            let line = Line::try_parse_from(["spherule"].iter().chain(words));
+            line.expect("options").encoding.wanted_layers()
+        };
+        assert_eq!(wanted(&[]), []);
+        assert_eq!(wanted(&["--layers", "id,albedo,id"]), [Layer::Albedo, Layer::Id]);
+        assert_eq!(wanted(&["--layers", "id,all"]), Layer::ALL);
+    }
 }

@@ -1,0 +1,4 @@
+//! Groups of options that commands share.
+
+pub(super) mod picture;
+pub(super) mod settings;
