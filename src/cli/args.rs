@@ -3,10 +3,20 @@
 use super::command_line::command_line;
 use super::failure::Failure;
 use super::{
-    bench, compare, completions, examples, field, info, man, merge, render, status, stress,
-    version, view,
+    bench, compare, completions, field, info, man, merge, render, status, stress, version, view,
 };
 use clap::Parser;
+
+/// Examples and exit codes at the end of `--help`.
+const EXAMPLES: &str = "\
+Examples:
+  spherule                                   a random field of spheres, to spherule.png
+  spherule particles.xyz -o figure.png       same as spherule render particles.xyz ...
+  spherule ./info                            a file with the name of a command
+  spherule render scenes/weekend.toml -o weekend.png
+  spherule info scenes/weekend.toml
+
+Exit codes: 0 success, 1 failure, 2 invalid command line, 130 interrupted, 143 terminated";
 
 /// Renders scenes of spheres with exact visibility; the image never depends on the performance settings
 #[derive(Debug, Parser)]
@@ -14,7 +24,7 @@ use clap::Parser;
     name = "spherule",
     version,
     override_usage = "spherule [FILE] [OPTIONS]\n       spherule <COMMAND>",
-    after_help = examples::PROGRAM
+    after_help = EXAMPLES
 )]
 pub(super) struct Args {
     #[command(subcommand)]
@@ -24,7 +34,7 @@ pub(super) struct Args {
 #[derive(Debug, clap::Subcommand)]
 pub(super) enum Command {
     /// Render a scene or a particle file to an image (the default command)
-    #[command(allow_negative_numbers = true, after_help = examples::RENDER)]
+    #[command(allow_negative_numbers = true, after_help = render::EXAMPLES)]
     Render(Box<render::RenderArgs>),
     /// Open an interactive viewer for a scene or a particle file
     #[command(
@@ -34,19 +44,19 @@ pub(super) enum Command {
     )]
     View(Box<view::ViewerArgs>),
     /// Merge the parts of a render made on several machines
-    #[command(allow_negative_numbers = true, after_help = examples::MERGE)]
+    #[command(allow_negative_numbers = true, after_help = merge::EXAMPLES)]
     Merge(merge::Args),
     /// Show the progress of parts and checkpoints: what is done, what is missing, and the time left
-    #[command(after_help = examples::STATUS)]
+    #[command(after_help = status::EXAMPLES)]
     Status(status::Args),
     /// Generate a scene: a TOML file, with its spheres in a CSV file next to it
-    #[command(allow_negative_numbers = true, after_help = examples::FIELD)]
+    #[command(allow_negative_numbers = true, after_help = field::EXAMPLES)]
     Field(field::Args),
     /// Show the contents of a scene, and the work that a render of it skips
-    #[command(after_help = examples::INFO)]
+    #[command(after_help = info::EXAMPLES)]
     Info(Box<info::Args>),
     /// Measure the difference between an image and a reference
-    #[command(after_help = examples::COMPARE)]
+    #[command(after_help = compare::EXAMPLES)]
     Compare(compare::Args),
     /// Compare intersection tests with exact arithmetic in numerically hard cases
     #[command(after_help = stress::EXAMPLES)]
@@ -55,7 +65,7 @@ pub(super) enum Command {
     #[command(after_help = bench::EXAMPLES)]
     Bench(bench::Args),
     /// Print a completion script for a shell
-    #[command(after_help = examples::COMPLETIONS)]
+    #[command(after_help = completions::EXAMPLES)]
     Completions(completions::Args),
     /// Write the manual pages of all commands to a folder
     #[command(hide = true)]

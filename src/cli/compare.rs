@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::files::Files;
-use super::options::picture::read_help;
+use super::options::image::read_help;
 use super::output;
 use indicatif::HumanCount;
 use serde::Serialize;
@@ -10,6 +10,15 @@ use spherule_render::image::{Comparison, Image, compare};
 use std::borrow::Cow;
 use std::path::PathBuf;
 use std::process::ExitCode;
+
+/// Examples at the end of `--help`.
+pub(super) const EXAMPLES: &str = "\
+Differences are in linear radiance. Exit code 0 means that the images could be compared, not that they
+are equal.
+
+Examples:
+  spherule compare picture.exr reference.exr
+  spherule compare a.png b.png --json";
 
 /// Arguments of `spherule compare`.
 #[derive(Debug, clap::Args)]

@@ -3,6 +3,12 @@
 use super::output;
 use std::process::ExitCode;
 
+/// Examples at the end of `--help`.
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  spherule completions bash > ~/.local/share/bash-completion/completions/spherule
+  spherule completions zsh > ~/.zfunc/_spherule";
+
 /// Arguments of `spherule completions`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {

@@ -5,7 +5,7 @@
 //! usual.
 
 use super::failure::Failure;
-use super::particles::ParticleArgs;
+use super::options::particles::ParticleArgs;
 use spherule_render::atomic::FileIdentity;
 use spherule_render::scene;
 use std::collections::HashMap;

@@ -3,12 +3,12 @@
 use super::contents::plural;
 use super::failure::Failure;
 use super::files::Files;
-use super::memory::MemoryArgs;
-use super::options::picture::{EncodingArgs, picture_help};
+use super::options::image::{EncodingArgs, picture_help};
+use super::options::lists::{self, List};
+use super::options::memory::MemoryArgs;
 use super::output;
 use super::picture_file;
 use super::render::{Subject, warnings};
-use super::settings::{self, List};
 use super::write_file::write_file;
 use indicatif::HumanCount;
 use serde::Serialize;
@@ -22,6 +22,14 @@ use spherule_render::split::{Merge, MergeError};
 use std::ops::Range;
 use std::path::PathBuf;
 use std::process::ExitCode;
+
+/// Examples at the end of `--help`.
+pub(super) const EXAMPLES: &str = "\
+The merged image has the same bytes as a render in one piece, and the layers of the parts.
+
+Examples:
+  spherule merge picture.*.part -o picture.exr
+  spherule merge picture.1-of-3.part picture.3-of-3.part --partial -o preview.png";
 
 /// Arguments of `spherule merge`.
 #[derive(Debug, clap::Args)]
@@ -103,8 +111,8 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let options = subject.write_options(&args.encoding, format, &render, None);
     let file = render.image.encode(format, &channels, &options)?;
     write_file(&args.output, &file)?;
-    let mut listed = settings::list(settings, region);
-    listed.extend(settings::list_encoding(format, &options));
+    let mut listed = lists::of_settings(settings, region);
+    listed.extend(lists::of_encoding(format, &options));
     report(args, &merged, &render, listed);
     Ok(ExitCode::SUCCESS)
 }

@@ -1,47 +1,31 @@
 //! The command line: arguments, commands, messages and exit codes.
 
-mod annotations;
-mod appearance;
 mod args;
 mod bench;
-mod checkpoint;
 mod command_line;
 mod compare;
 mod completions;
 mod contents;
 mod devices;
-mod examples;
 mod failure;
 mod field;
 mod files;
-mod frames;
 mod info;
 mod man;
-mod memory;
 mod merge;
-mod names;
 mod options;
 mod output;
-mod part;
-mod particles;
 mod picture_file;
 mod processor;
 mod progress;
 mod render;
-mod rows;
-mod sequences;
-mod settings;
 mod signals;
-mod slices;
 mod source;
 mod status;
 mod stress;
 mod threads;
-mod values;
 mod version;
 mod view;
-mod views;
-mod with_text;
 mod write_file;
 
 use self::args::{Args, Command};

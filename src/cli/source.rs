@@ -1,7 +1,7 @@
 //! Sources of scenes.
 
 use super::failure::Failure;
-use super::particles::ParticleArgs;
+use super::options::particles::ParticleArgs;
 use spherule_render::prepared::is_prepared;
 use spherule_render::scene::particles::ReadOptions;
 use spherule_render::scene::{FileError, Scene, generate};

@@ -14,6 +14,15 @@ use std::time::Duration;
 /// Exit code if something is not rendered yet.
 const INCOMPLETE: u8 = 3;
 
+/// Exit codes and examples at the end of `--help`.
+pub(super) const EXAMPLES: &str = "\
+Exit codes: 0 complete and ready to merge, 1 a file cannot be used, 2 invalid command line, 3 incomplete
+
+Examples:
+  spherule status picture.*.part
+  until spherule status picture.*.part; do sleep 60; done
+  spherule status long.checkpoint --json";
+
 /// Arguments of `spherule status`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {

@@ -1,7 +1,7 @@
 //! Arguments of `spherule bench`.
 
+use crate::cli::options::values::{SAMPLES, THREADS};
 use crate::cli::threads;
-use crate::cli::values::{SAMPLES, THREADS};
 use clap::{Subcommand, value_parser};
 use spherule_measure::bench::paper::Scale;
 use spherule_measure::bench::{Effort, Options};

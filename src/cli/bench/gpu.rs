@@ -1,7 +1,7 @@
 //! Benchmark of the GPU: rays per second by class, times of stages, and time to an error, beside the processor.
 
 use super::super::devices;
-use crate::cli::names::Device as Choice;
+use crate::cli::options::names::Device as Choice;
 use spherule_gpu::{AdapterSummary, Device, DeviceTree, QueryStage, QueryTimes};
 use spherule_measure::bench::convergence::{Reference, reaches};
 use spherule_measure::bench::rounds::{Times, clock};

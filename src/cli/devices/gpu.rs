@@ -1,7 +1,7 @@
 //! Programs that are built with GPUs.
 
 use super::summary::DeviceSummary;
-use crate::cli::names::Device as Choice;
+use crate::cli::options::names::Device as Choice;
 use crate::cli::output;
 use indicatif::BinaryBytes;
 use serde::Serialize;

@@ -1,7 +1,7 @@
 //! Programs that are built without GPUs.
 
 use super::summary::DeviceSummary;
-use crate::cli::names::Device;
+use crate::cli::options::names::Device;
 use crate::cli::output;
 use spherule_render::World;
 use spherule_render::scene::Settings;

@@ -1,8 +1,16 @@
 //! Arguments of `spherule field`.
 
-use crate::cli::values::{self, Radii};
+use crate::cli::options::values::{self, Radii};
 use clap::ValueEnum;
 use std::path::PathBuf;
+
+/// Examples at the end of `--help`.
+pub(in crate::cli) const EXAMPLES: &str = "\
+Examples:
+  spherule field -o field.toml               the scene of `spherule render`
+  spherule field --count 500 --mix 1,0,0 --seed 7 -o large.toml
+  spherule field grid --count 50 --radius 0.3 -o grid.toml
+  spherule field lattice --jitter 0.03 -o crystal.toml";
 
 #[derive(Debug, clap::Args)]
 pub(in crate::cli) struct Args {

@@ -3,13 +3,13 @@
 mod args;
 mod scene;
 
-pub(super) use self::args::Args;
+pub(super) use self::args::{Args, EXAMPLES};
 use self::args::{Kind, ParameterArgs};
 use super::contents::spheres;
 use super::failure::Failure;
 use super::files::Files;
+use super::options::values::Radii;
 use super::output;
-use super::values::Radii;
 use clap::ValueEnum;
 use spherule_render::scene::generate::{
     DEFAULT_MIX, Field, Generator, Grid, Lattice, Sphereflake, Volume, Weekend,

@@ -1,6 +1,6 @@
 //! Options of render settings: one for each row of the table [`SETTINGS`].
 
-use crate::cli::values;
+use super::values;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Command, FromArgMatches};
 use spherule_render::scene::Settings;

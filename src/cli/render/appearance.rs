@@ -1,8 +1,8 @@
 //! Color bars and annotations of an image.
 
 use super::job::Job;
-use crate::cli::appearance::BarPlace;
 use crate::cli::failure::Failure;
+use crate::cli::options::appearance::BarPlace;
 use crate::cli::write_file::write_file;
 use spherule_render::World;
 use spherule_render::atomic::check_destination;

@@ -1,8 +1,8 @@
 //! Files that a render reads and writes.
 
 use super::args::RenderArgs;
-use crate::cli::appearance::BarPlace;
 use crate::cli::files::Files;
+use crate::cli::options::appearance::BarPlace;
 
 /// Returns the files of a render, without numbered images, whose count is not known yet.
 pub(in crate::cli) fn files(args: &RenderArgs) -> Files {

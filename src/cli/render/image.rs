@@ -1,11 +1,11 @@
 //! One image: rendered, denoised, drawn over and written.
 
 use super::appearance::{self, draw_annotations, write_bar};
-use super::checkpoint_writer::CheckpointWriter;
+use super::checkpoint::resume::Resumed;
+use super::checkpoint::writer::CheckpointWriter;
 use super::job::Job;
 use super::notices::Notices;
 use super::prepare::{PlacedScene, Prepared};
-use super::resume::Resumed;
 use super::summary::Summary;
 use super::terminal::Terminal;
 use super::video::Video;

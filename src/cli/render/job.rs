@@ -2,21 +2,22 @@
 
 use super::args::RenderArgs;
 use super::video::Container;
-use crate::cli::annotations::AnnotationArgs;
-use crate::cli::appearance::{AppearanceArgs, BarPlace};
+use crate::cli::options::annotations::AnnotationArgs;
+use crate::cli::options::appearance::{AppearanceArgs, BarPlace};
 
-use crate::cli::checkpoint::CheckpointArgs;
 use crate::cli::failure::Failure;
-use crate::cli::names;
-use crate::cli::options::picture::{EncodingArgs, PictureArgs, ReportArgs, SpeedArgs};
-use crate::cli::particles::ParticleArgs;
+use crate::cli::options::checkpoints::CheckpointArgs;
+use crate::cli::options::image::{EncodingArgs, PictureArgs, ReportArgs, SpeedArgs};
+use crate::cli::options::lists::region_text;
+use crate::cli::options::names;
+use crate::cli::options::particles::ParticleArgs;
+use crate::cli::options::sequences::SequenceArgs;
+use crate::cli::options::slices::SliceArgs;
+use crate::cli::options::style::StyleArgs;
+use crate::cli::options::views::ViewArgs;
 use crate::cli::picture_file;
-use crate::cli::sequences::SequenceArgs;
-use crate::cli::settings::region_text;
-use crate::cli::slices::SliceArgs;
 use crate::cli::source::Source;
 use crate::cli::threads;
-use crate::cli::views::{StyleArgs, ViewArgs};
 use spherule_render::World;
 use spherule_render::bvh::builders::Builder;
 use spherule_render::compose::{Fault, Focus, Request, Shared};

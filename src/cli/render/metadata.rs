@@ -5,9 +5,9 @@
 
 use super::job::Job;
 use super::prepare::{PlacedScene, Prepared};
-use crate::cli::appearance::BarPlace;
-use crate::cli::options::picture::EncodingArgs;
-use crate::cli::settings::{self, List};
+use crate::cli::options::appearance::BarPlace;
+use crate::cli::options::image::EncodingArgs;
+use crate::cli::options::lists::{self, List};
 use serde_json::Value;
 use spherule_render::denoise::Judged;
 use spherule_render::film::Region;
@@ -151,8 +151,8 @@ impl Subject<'_> {
             // NUL is the only character that files cannot store.
             metadata.push("Title", self.title.replace('\0', " "));
         }
-        let listed = texts(settings::list(self.settings, self.region));
-        let encoding = texts(settings::list_encoding(format, options));
+        let listed = texts(lists::of_settings(self.settings, self.region));
+        let encoding = texts(lists::of_encoding(format, options));
         for (name, text) in listed.iter().chain(self.looks).chain(&encoding) {
             metadata.push(name, text);
         }

@@ -5,8 +5,8 @@
 
 use super::appearance::OVERLAP;
 use super::args::RenderArgs;
-use super::checkpoint_writer::CheckpointWriter;
-use super::invocation::CommandOptions;
+use super::checkpoint::invocation::CommandOptions;
+use super::checkpoint::writer::CheckpointWriter;
 use super::job::Job;
 use super::prepare::Prepared;
 use crate::cli::failure::Failure;

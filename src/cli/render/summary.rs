@@ -7,11 +7,11 @@ use super::notices::Notices;
 use super::prepare::Prepared;
 use crate::cli::contents::{BodyCounts, found, plural};
 use crate::cli::devices::DeviceSummary;
-use crate::cli::names::TRAVERSALS;
-use crate::cli::options::picture::ReportArgs;
+use crate::cli::options::image::ReportArgs;
+use crate::cli::options::lists::{self, List};
+use crate::cli::options::names::TRAVERSALS;
 use crate::cli::output;
 use crate::cli::progress::rate;
-use crate::cli::settings::{self, List};
 use indicatif::{BinaryBytes, HumanCount};
 use serde::Serialize;
 use spherule_render::bvh::builders::Builder;
@@ -106,8 +106,8 @@ impl<'a> Summary<'a> {
         judged: Option<&Judged>,
         options: &WriteOptions,
     ) -> Self {
-        let mut listed = settings::list(&prepared.scene.settings, prepared.region);
-        listed.extend(settings::list_encoding(job.format, options));
+        let mut listed = lists::of_settings(&prepared.scene.settings, prepared.region);
+        listed.extend(lists::of_encoding(job.format, options));
         let mut new_warnings = warnings(&render.counters, &prepared.scene.settings);
         new_warnings.extend(missed(render, judged, &prepared.scene.settings));
         new_warnings.extend(prepared.device.fault());

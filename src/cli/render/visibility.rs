@@ -1,7 +1,7 @@
 //! Detection of images that show no sphere.
 
 use crate::cli::contents::spheres;
-use crate::cli::settings::region_text;
+use crate::cli::options::lists::region_text;
 use spherule_render::World;
 use spherule_render::film::Region;
 use spherule_render::world::Visibility;

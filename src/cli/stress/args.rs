@@ -1,7 +1,7 @@
 //! Arguments of `spherule stress`.
 
-use crate::cli::names::regime;
-use crate::cli::values::{RAYS, THREADS};
+use crate::cli::options::names::regime;
+use crate::cli::options::values::{RAYS, THREADS};
 use clap::value_parser;
 use spherule_measure::stress::Regime;
 use std::path::PathBuf;

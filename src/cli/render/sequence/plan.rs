@@ -1,7 +1,7 @@
 //! Plan of a sequence: the list of its images.
 
 use crate::cli::failure::Failure;
-use crate::cli::frames::FrameRange;
+use crate::cli::options::frames::FrameRange;
 use spherule_render::scene::FileError;
 use spherule_render::scene::particles::{FrameCount, ReadOptions};
 use std::path::Path;

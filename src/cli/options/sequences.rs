@@ -3,17 +3,17 @@
 /// Options for image sequences.
 #[derive(Clone, Copy, Debug, Default, clap::Args)]
 #[command(next_help_heading = "Sequences (--frame all or --turntable)")]
-pub(super) struct SequenceArgs {
+pub(in crate::cli) struct SequenceArgs {
     /// Skip images that already exist, if their metadata has the same scene, settings and samples; for PNG,
     /// PPM and EXR
     #[arg(long)]
-    pub(super) skip_existing: bool,
+    pub(in crate::cli) skip_existing: bool,
     /// Frame rate of a video: -o video.mp4, .mov, .webm or .gif, which needs ffmpeg [default: 30]
     #[arg(long, value_name = "N", value_parser = fps)]
-    pub(super) fps: Option<f64>,
+    pub(in crate::cli) fps: Option<f64>,
     /// Number of the first image, from 0; set by checkpoints
     #[arg(long, value_name = "N", hide = true)]
-    pub(super) first_picture: Option<u64>,
+    pub(in crate::cli) first_picture: Option<u64>,
 }
 
 fn fps(text: &str) -> Result<f64, String> {

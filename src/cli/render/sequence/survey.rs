@@ -1,10 +1,10 @@
 //! Survey of a sequence before rendering: the camera, the color range and the guessed radius, which all
 //! images share.
 
-use super::job::{Common, Job};
-use super::prepare::stage;
 use crate::cli::contents::plural;
 use crate::cli::failure::Failure;
+use crate::cli::render::job::{Common, Job};
+use crate::cli::render::prepare::stage;
 use spherule_render::compose::{self, Shared, Staged};
 use spherule_render::scene::FileError;
 use spherule_render::scene::particles::{

@@ -1,12 +1,15 @@
 //! `spherule info`: prints the contents of a scene, its memory, and the work that a render skips.
 
+pub(super) mod rows;
+
+use self::rows::RowInfo;
 use super::contents::{BodyCounts, dropped, found, plural};
 use super::failure::Failure;
 use super::files::Files;
-use super::particles::{ParticleArgs, ParticleInfo};
-use super::rows::RowInfo;
+use super::options::particles::{ParticleArgs, ParticleInfo};
+use super::options::{lists, slices};
 use super::source::Source;
-use super::{devices, output, settings, slices};
+use super::{devices, output};
 use indicatif::{BinaryBytes, HumanCount};
 use serde::Serialize;
 use spherule_render::World;
@@ -16,9 +19,16 @@ use spherule_render::shade::MaterialKind;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+/// Examples at the end of `--help`.
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  spherule info scene.toml
+  spherule info particles.csv --json
+  spherule info trajectory.xyz --frame last --rows 3";
+
 /// Arguments of `spherule info`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Args {
+pub(in crate::cli) struct Args {
     /// Scene (.toml), particle file (any other name), or - to read particles from standard input
     #[arg(required_unless_present = "devices")]
     scene: Option<PathBuf>,
@@ -56,7 +66,7 @@ struct Info {
     lights: LightInfo,
     environment: &'static str,
     camera: CameraInfo,
-    settings: settings::List,
+    settings: lists::List,
     memory: MemoryInfo,
     found: Vec<String>,
     skipped: Vec<String>,
@@ -98,7 +108,7 @@ struct MemoryInfo {
 const SHOWN: usize = 12;
 
 /// Loads the scene and prints its contents.
-pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
+pub(in crate::cli) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let Some(file) = &args.scene else {
         devices::list(args.json);
         return Ok(ExitCode::SUCCESS);
@@ -152,7 +162,7 @@ impl Info {
             lights: LightInfo::new(world),
             environment: scene.environment.map.kind(),
             camera: CameraInfo::new(scene, world),
-            settings: settings::list(&scene.settings, Region { x: 0, y: 0, width, height }),
+            settings: lists::of_settings(&scene.settings, Region { x: 0, y: 0, width, height }),
             memory: MemoryInfo::new(world),
             found: found(world),
             skipped: world.features.skipped(),

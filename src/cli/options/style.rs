@@ -1,6 +1,6 @@
 //! Options for presets and backgrounds.
 
-use crate::cli::settings::List;
+use super::lists::List;
 use serde_json::json;
 use spherule_render::scene::{Background, Preset};
 use spherule_render::{color, suggest};

@@ -2,8 +2,8 @@
 
 mod environment;
 
-use super::failure::Failure;
 use super::names::{self, SPLITS};
+use crate::cli::failure::Failure;
 use spherule_render::split::{Part, Split};
 use std::num::NonZeroU32;
 
@@ -11,12 +11,13 @@ use std::num::NonZeroU32;
 const FROM_ENVIRONMENT: &str = "from-env";
 
 /// Heading of the options for several machines.
-pub(super) const HEADING: &str = "Distributed rendering (combine the parts with `spherule merge`)";
+pub(in crate::cli) const HEADING: &str =
+    "Distributed rendering (combine the parts with `spherule merge`)";
 
 /// Options for rendering one part of an image.
 #[derive(Clone, Copy, Debug, clap::Args)]
 #[command(next_help_heading = HEADING)]
-pub(super) struct PartArgs {
+pub(in crate::cli) struct PartArgs {
     /// Render part K of N to a file named after --output with the suffix .K-of-N.part; from-env takes K, and
     /// N if it is not given, from the environment variables of Slurm, PBS, Grid Engine, LSF, AWS Batch,
     /// Kubernetes, MPI or GNU parallel. Of a sequence, part K is every Nth image
@@ -24,7 +25,7 @@ pub(super) struct PartArgs {
     part: Option<Choice>,
     /// Split the image by samples or by tiles [default: tiles, or samples if each part has 16 or more per pixel]
     #[arg(long, requires = "part", value_parser = names::parser(&SPLITS))]
-    pub(super) split: Option<Split>,
+    pub(in crate::cli) split: Option<Split>,
 }
 
 /// Source of the part's number.
@@ -37,7 +38,7 @@ enum Choice {
 
 impl PartArgs {
     /// Resolves the part from the environment if asked to, and returns it.
-    pub(super) fn resolve(&mut self) -> Result<Option<Part>, Failure> {
+    pub(in crate::cli) fn resolve(&mut self) -> Result<Option<Part>, Failure> {
         if let Some(Choice::Environment(count)) = self.part {
             // Variables that are not valid Unicode are ignored.
             let variable = |name: &str| std::env::var(name).ok();
@@ -49,12 +50,12 @@ impl PartArgs {
     }
 
     /// Returns whether there is a part, resolved or not.
-    pub(super) fn is_given(self) -> bool {
+    pub(in crate::cli) fn is_given(self) -> bool {
         self.part.is_some()
     }
 
     /// Returns the part, once it is resolved.
-    pub(super) fn resolved(self) -> Option<Part> {
+    pub(in crate::cli) fn resolved(self) -> Option<Part> {
         match self.part {
             Some(Choice::User(part)) => Some(part),
             _ => None,

@@ -1,25 +1,27 @@
 //! Image sequences: of trajectory frames, of a turntable, or of both.
 //!
 //! Properties that depend on all frames, such as the camera and the color range, are the same in all images:
-//! see [`super::survey`]. A file is read twice for that, standard input once.
+//! see [`survey`]. A file is read twice for that, standard input once.
 
 mod frame_reader;
+mod numbered_names;
 mod plan;
+mod survey;
 
 use self::frame_reader::FrameReader;
+use self::numbered_names::numbered;
 use self::plan::{Frames, Plan, Shot, stream_name};
-use super::checkpoint_writer::CheckpointWriter;
+use self::survey::Survey;
+use super::checkpoint::resume::Resumed;
+use super::checkpoint::writer::CheckpointWriter;
 use super::image::{Session, render_placed};
 use super::job::{Common, Job, Place};
-use super::numbered_names::numbered;
 use super::prepare::PlacedScene;
-use super::resume::Resumed;
-use super::survey::Survey;
 use super::video::Video;
-use crate::cli::appearance::BarPlace;
 use crate::cli::contents::plural;
 use crate::cli::failure::Failure;
 use crate::cli::files::Files;
+use crate::cli::options::appearance::BarPlace;
 use crate::cli::output;
 use crate::cli::picture_file;
 use crate::cli::source::Source;

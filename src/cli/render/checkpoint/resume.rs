@@ -1,11 +1,11 @@
 //! Resuming of renders from checkpoints.
 
-use super::args::RenderArgs;
 use super::invocation::{CommandOptions, Invocation};
-use super::job::Job;
-use super::prepare::Prepared;
 use crate::cli::failure::Failure;
-use crate::cli::settings::region_text;
+use crate::cli::options::lists::region_text;
+use crate::cli::render::args::RenderArgs;
+use crate::cli::render::job::Job;
+use crate::cli::render::prepare::Prepared;
 use clap::{ArgMatches, Command, FromArgMatches};
 use spherule_render::checkpoint::{self, Origin};
 use spherule_render::render::ResumableRender;
@@ -14,7 +14,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 /// A resumed render.
-pub(super) struct Resumed {
+pub(in crate::cli) struct Resumed {
     path: PathBuf,
     origin: Origin,
     render: ResumableRender,
@@ -23,7 +23,7 @@ pub(super) struct Resumed {
 impl Resumed {
     /// Reads a checkpoint. Returns the render and its arguments: those stored in the checkpoint, overridden
     /// by those of the command line, with paths relative to the folder where the render started.
-    pub(super) fn read(
+    pub(in crate::cli) fn read(
         path: &Path,
         now: Invocation,
     ) -> Result<(Self, RenderArgs, Invocation), Failure> {
@@ -41,12 +41,12 @@ impl Resumed {
     }
 
     /// Converts an error to that of a render that cannot resume.
-    pub(super) fn refuse(self, why: &str) -> Failure {
+    pub(in crate::cli) fn refuse(self, why: &str) -> Failure {
         Failure::Resume(self.path, why.to_owned())
     }
 
     /// Returns the render, if it can resume with these arguments.
-    pub(super) fn into_render(
+    pub(in crate::cli) fn into_render(
         mut self,
         job: &Job,
         prepared: &Prepared,

@@ -4,12 +4,12 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use spherule_measure::stress::{REGIMES, Regime};
 use spherule_render::image::{Depth, Format, PpmEncoding};
 use spherule_render::layers::Layer;
-pub(super) use spherule_render::settings::Names;
+pub(in crate::cli) use spherule_render::settings::Names;
 use spherule_render::split::Split;
 use spherule_render::trace::{PacketWidth, Traversal};
 
 /// Returns a parser of names.
-pub(super) fn parser<T: Clone + Send + Sync>(
+pub(in crate::cli) fn parser<T: Clone + Send + Sync>(
     names: &Names<T>,
 ) -> impl TypedValueParser<Value = T> + use<T> {
     let table = names.0;
@@ -23,7 +23,7 @@ pub(super) fn parser<T: Clone + Send + Sync>(
 }
 
 /// Returns a parser of the formats that can be written.
-pub(super) fn formats() -> impl TypedValueParser<Value = Format> {
+pub(in crate::cli) fn formats() -> impl TypedValueParser<Value = Format> {
     let named =
         |name: &str| Format::WRITTEN.into_iter().find(|format| format.option_name() == name);
     PossibleValuesParser::new(Format::WRITTEN.map(Format::option_name))
@@ -31,17 +31,17 @@ pub(super) fn formats() -> impl TypedValueParser<Value = Format> {
 }
 
 /// Bits of a channel.
-pub(super) const BITS: Names<Depth> =
+pub(in crate::cli) const BITS: Names<Depth> =
     Names(&[("8", Depth::Eight, "0 to 255"), ("16", Depth::Sixteen, "0 to 65535")]);
 
 /// Encodings of PPM.
-pub(super) const PPM: Names<PpmEncoding> = Names(&[
+pub(in crate::cli) const PPM: Names<PpmEncoding> = Names(&[
     ("plain", PpmEncoding::Plain, "P3: numbers as text"),
     ("binary", PpmEncoding::Binary, "P6: bytes"),
 ]);
 
 /// Layers of the image file; `None` stands for all.
-pub(super) const LAYERS: Names<Option<Layer>> = Names(&[
+pub(in crate::cli) const LAYERS: Names<Option<Layer>> = Names(&[
     ("albedo", Some(Layer::Albedo), "albedo.R G B: surface color; black for the background"),
     ("normal", Some(Layer::Normal), "normal.X Y Z: toward the viewer, in the scene's axes"),
     ("depth", Some(Layer::Depth), "depth.Z: distance from the camera; inf for the background"),
@@ -62,7 +62,7 @@ pub(super) const LAYERS: Names<Option<Layer>> = Names(&[
 ]);
 
 /// Rays in a packet.
-pub(super) const LANES: Names<PacketWidth> = Names(&[
+pub(in crate::cli) const LANES: Names<PacketWidth> = Names(&[
     ("1", PacketWidth::One, "One ray at a time"),
     ("4", PacketWidth::Four, "Packets of 4 rays"),
     ("8", PacketWidth::Eight, "Packets of 8 rays"),
@@ -70,20 +70,20 @@ pub(super) const LANES: Names<PacketWidth> = Names(&[
 ]);
 
 /// Ways to split a render into parts.
-pub(super) const SPLITS: Names<Split> = Names(&[
+pub(in crate::cli) const SPLITS: Names<Split> = Names(&[
     ("samples", Split::Samples, "Each part takes some of the samples of every pixel"),
     ("tiles", Split::Tiles, "Each part renders some of the tiles, and uses less memory"),
 ]);
 
 /// Returns a parser of the names of regimes.
-pub(super) fn regime() -> impl TypedValueParser<Value = &'static Regime> {
+pub(in crate::cli) fn regime() -> impl TypedValueParser<Value = &'static Regime> {
     let names = REGIMES.iter().map(|regime| PossibleValue::new(regime.name).help(regime.about));
     PossibleValuesParser::new(names)
         .try_map(|name| Regime::named(&name).ok_or("not one of the names"))
 }
 
 /// Traversals. The last name is a former one, kept for compatibility.
-pub(super) const TRAVERSALS: Names<Traversal> = Names(&[
+pub(in crate::cli) const TRAVERSALS: Names<Traversal> = Names(&[
     (
         "auto",
         Traversal::Auto,
@@ -99,7 +99,7 @@ pub(super) const TRAVERSALS: Names<Traversal> = Names(&[
 
 /// Builders of the bounding volume hierarchy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub(super) enum Builder {
+pub(in crate::cli) enum Builder {
     /// The fastest in total, by the number of spheres and samples
     Auto,
     /// Median split on the longest axis
@@ -112,7 +112,7 @@ pub(super) enum Builder {
 
 /// What follows paths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub(super) enum Device {
+pub(in crate::cli) enum Device {
     /// The processor, so far
     Auto,
     /// The processor

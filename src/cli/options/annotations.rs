@@ -1,6 +1,6 @@
 //! Options for annotations of the image.
 
-use super::settings::List;
+use super::lists::List;
 use super::with_text::{self, WithText};
 use serde_json::json;
 use spherule_render::compose::{AnnotationRequest, Axes, Bar, LabelText, ink, position, text_size};
@@ -13,7 +13,7 @@ use std::str::FromStr;
     next_help_heading = "Annotations (at POSITION: top-left, top, top-right, left, right, bottom-left, bottom or \
                          bottom-right)"
 )]
-pub(super) struct AnnotationArgs {
+pub(in crate::cli) struct AnnotationArgs {
     /// Draw a legend of the colors: of elements or types, or of the texts of --color-by; of more than 12 names,
     /// the 12 most frequent [default position: top-right]
     #[arg(
@@ -69,12 +69,12 @@ pub(super) struct AnnotationArgs {
 
 impl AnnotationArgs {
     /// Returns whether no option is given.
-    pub(super) fn is_empty(&self) -> bool {
+    pub(in crate::cli) fn is_empty(&self) -> bool {
         self.list().is_empty()
     }
 
     /// Settings for the image's metadata.
-    pub(super) fn list(&self) -> List {
+    pub(in crate::cli) fn list(&self) -> List {
         let mut list = List::new();
         if let Some(position) = self.legend {
             list.insert("legend".to_owned(), json!(position.name()));
@@ -90,13 +90,13 @@ impl AnnotationArgs {
     }
 
     /// Returns the name of an option for letters, if one is given.
-    pub(super) fn lettering(&self) -> Option<&'static str> {
+    pub(in crate::cli) fn lettering(&self) -> Option<&'static str> {
         let size = self.text_size.map(|_| "--text-size");
         size.or_else(|| self.text_color.as_ref().map(|_| "--text-color"))
     }
 
     /// Returns the annotations to draw, with a color bar at `bar`.
-    pub(super) fn request(&self, bar: Option<Anchor>) -> AnnotationRequest {
+    pub(in crate::cli) fn request(&self, bar: Option<Anchor>) -> AnnotationRequest {
         AnnotationRequest {
             color_bar: bar,
             legend: self.legend,
@@ -109,7 +109,7 @@ impl AnnotationArgs {
     }
 
     /// Returns the text of a label, as it was typed.
-    pub(super) fn label(&self, row: usize) -> &str {
+    pub(in crate::cli) fn label(&self, row: usize) -> &str {
         self.labels.get(row).map_or("", WithText::text)
     }
 }

@@ -1,11 +1,11 @@
 //! Writing of checkpoints.
 
 use super::invocation::Invocation;
-use super::job::Job;
-use super::prepare::Prepared;
-use crate::cli::checkpoint::CheckpointArgs;
 use crate::cli::failure::Failure;
+use crate::cli::options::checkpoints::CheckpointArgs;
 use crate::cli::output;
+use crate::cli::render::job::Job;
+use crate::cli::render::prepare::Prepared;
 use spherule_render::atomic::{check_destination, remove_leftovers};
 use spherule_render::checkpoint::{self, Caption, Lock, Origin};
 use spherule_render::render::ResumableRender;
@@ -15,7 +15,7 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 /// Writes checkpoints to a file, which is locked against other processes.
-pub(super) struct CheckpointWriter {
+pub(in crate::cli) struct CheckpointWriter {
     path: PathBuf,
     _lock: Option<Lock>,
     /// The command that checkpoints store.
@@ -29,7 +29,7 @@ pub(super) struct CheckpointWriter {
 impl CheckpointWriter {
     /// Checks that checkpoints can be written, if they are requested, and locks their file, before anything
     /// is read.
-    pub(super) fn new(args: &CheckpointArgs) -> Result<Option<Self>, Failure> {
+    pub(in crate::cli) fn new(args: &CheckpointArgs) -> Result<Option<Self>, Failure> {
         let Some(path) = args.file().cloned() else { return Ok(None) };
         check(&path).map_err(|error| Failure::Write(path.clone(), error))?;
         let lock = Lock::take(&path)?;
@@ -50,13 +50,13 @@ impl CheckpointWriter {
     }
 
     /// Sets the command that checkpoints store, with its output file.
-    pub(super) fn with(self, given: Invocation, output: &Path) -> Self {
+    pub(in crate::cli) fn with(self, given: Invocation, output: &Path) -> Self {
         let typed = given.typed.stored(output);
         Self { invocation: Invocation { typed, ..given }, ..self }
     }
 
     /// Time of the next checkpoint; `None` to write one only on exit.
-    pub(super) fn due(&self, args: &CheckpointArgs) -> Option<Instant> {
+    pub(in crate::cli) fn due(&self, args: &CheckpointArgs) -> Option<Instant> {
         let mut due = self.due.lock().ok()?;
         if due.is_none() {
             *due = args.pause(Duration::ZERO).map(|pause| Instant::now() + pause);
@@ -73,7 +73,7 @@ impl CheckpointWriter {
 
     /// Writes a checkpoint. On an error, prints a warning and continues the render. Returns whether it was
     /// written.
-    pub(super) fn save(
+    pub(in crate::cli) fn save(
         &self,
         job: &Job,
         prepared: &Prepared,
@@ -102,7 +102,7 @@ impl CheckpointWriter {
     }
 
     /// Writes a checkpoint.
-    pub(super) fn write(
+    pub(in crate::cli) fn write(
         &self,
         job: &Job,
         prepared: &Prepared,
@@ -122,12 +122,12 @@ impl CheckpointWriter {
     }
 
     /// The file of checkpoints.
-    pub(super) fn path(&self) -> &Path {
+    pub(in crate::cli) fn path(&self) -> &Path {
         &self.path
     }
 
     /// Returns the command that resumes the render.
-    pub(super) fn resume_command(&self) -> String {
+    pub(in crate::cli) fn resume_command(&self) -> String {
         format!("resume with: spherule render --resume {}", self.path.display())
     }
 }

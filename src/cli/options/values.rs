@@ -12,31 +12,31 @@ use std::time::Duration;
 const PIXELS: RangeInclusive<u32> = Settings::PIXELS;
 
 /// Range of samples per pixel.
-pub(super) const SAMPLES: RangeInclusive<i64> =
+pub(in crate::cli) const SAMPLES: RangeInclusive<i64> =
     *Settings::SAMPLES.start() as i64..=*Settings::SAMPLES.end() as i64;
 
 /// Range of time limits.
 const TIMES: RangeInclusive<Duration> = Settings::TIMES;
 
 /// Range of numbers of threads, bounded to limit memory.
-pub(super) const THREADS: RangeInclusive<i64> = 1..=4096;
+pub(in crate::cli) const THREADS: RangeInclusive<i64> = 1..=4096;
 
 /// Range of rays of a stress run.
-pub(super) const RAYS: RangeInclusive<u64> = 1..=1 << 52;
+pub(in crate::cli) const RAYS: RangeInclusive<u64> = 1..=1 << 52;
 
 /// A stop condition that `none` turns off.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct OrNone<T>(pub(super) Option<T>);
+pub(in crate::cli) struct OrNone<T>(pub(in crate::cli) Option<T>);
 
 /// One radius, or a minimum and a maximum.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Radii {
-    pub(super) least: f64,
-    pub(super) greatest: f64,
+pub(in crate::cli) struct Radii {
+    pub(in crate::cli) least: f64,
+    pub(in crate::cli) greatest: f64,
 }
 
 /// A value of a render setting. Names of choices are checked by clap.
-pub(super) fn setting(kind: &Kind, text: &str) -> Result<Value, String> {
+pub(in crate::cli) fn setting(kind: &Kind, text: &str) -> Result<Value, String> {
     let (words, number) = match *kind {
         Kind::Size => return size(text),
         Kind::Error => return error(text).map(|OrNone(error)| number_or_none(error)),
@@ -86,7 +86,7 @@ fn size(text: &str) -> Result<Value, String> {
 }
 
 /// `X,Y,WxH`.
-pub(super) fn region(text: &str) -> Result<Region, String> {
+pub(in crate::cli) fn region(text: &str) -> Result<Region, String> {
     let read = || {
         let (x, rest) = text.split_once(',')?;
         let (y, size) = rest.split_once(',')?;
@@ -118,7 +118,7 @@ fn error(text: &str) -> Result<OrNone<f64>, String> {
 }
 
 /// `90s`, `5m`, `1h 30m` or `none`.
-pub(super) fn time(text: &str) -> Result<OrNone<Duration>, String> {
+pub(in crate::cli) fn time(text: &str) -> Result<OrNone<Duration>, String> {
     if text == "none" {
         return Ok(OrNone(None));
     }
@@ -133,12 +133,12 @@ pub(super) fn time(text: &str) -> Result<OrNone<Duration>, String> {
 }
 
 /// Any finite number; the generators check the range of each parameter.
-pub(super) fn finite(text: &str) -> Result<f64, String> {
+pub(in crate::cli) fn finite(text: &str) -> Result<f64, String> {
     number(text).filter(|value: &f64| value.is_finite()).ok_or_else(|| "give a number".to_owned())
 }
 
 /// `R` or `MIN,MAX`.
-pub(super) fn radii(text: &str) -> Result<Radii, String> {
+pub(in crate::cli) fn radii(text: &str) -> Result<Radii, String> {
     let (least, greatest) = text.split_once(',').unwrap_or((text, text));
     match (finite(least), finite(greatest)) {
         (Ok(least), Ok(greatest)) => Ok(Radii { least, greatest }),
@@ -147,7 +147,7 @@ pub(super) fn radii(text: &str) -> Result<Radii, String> {
 }
 
 /// `DIFFUSE,METAL,GLASS`.
-pub(super) fn mix(text: &str) -> Result<[f64; 3], String> {
+pub(in crate::cli) fn mix(text: &str) -> Result<[f64; 3], String> {
     let shares: Option<Vec<f64>> = text.split(',').map(|share| finite(share).ok()).collect();
     shares.and_then(|shares| shares.try_into().ok()).ok_or_else(|| {
         "give the fractions of diffuse, metal and glass spheres, as in 0.6,0.3,0.1".to_owned()
@@ -161,6 +161,15 @@ fn pair(text: &str) -> Option<(u32, u32)> {
 
 fn number<T: FromStr>(text: &str) -> Option<T> {
     text.trim().parse().ok()
+}
+
+/// Numbers of copies of a cell, `NA,NB,NC`.
+pub(in crate::cli) fn copies(text: &str) -> Result<[u32; 3], String> {
+    let counts: Option<Vec<u32>> = text.split(',').map(|count| count.trim().parse().ok()).collect();
+    counts
+        .and_then(|counts| <[u32; 3]>::try_from(counts).ok())
+        .filter(|counts| !counts.contains(&0))
+        .ok_or_else(|| "give three integers of at least 1, as in 2,2,1".to_owned())
 }
 
 #[cfg(test)]
@@ -230,5 +239,14 @@ mod tests {
         }
         assert_eq!(radii("2"), Ok(Radii { least: 2.0, greatest: 2.0 }));
         assert_eq!(mix("1,0,2"), Ok([1.0, 0.0, 2.0]));
+    }
+
+    #[test]
+    fn three_counts_are_read_and_nothing_else() {
+        assert_eq!(copies("2,3,1"), Ok([2, 3, 1]));
+        assert_eq!(copies("2, 3, 1"), Ok([2, 3, 1]));
+        for text in ["2,3", "2,3,1,1", "0,1,1", "-1,1,1", "1.5,1,1", "", "99999999999,1,1"] {
+            assert!(copies(text).is_err(), "{text}");
+        }
     }
 }

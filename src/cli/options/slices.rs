@@ -1,6 +1,6 @@
 //! Options for slices: planes that cut spheres away.
 
-use super::settings::List;
+use super::lists::List;
 use serde_json::json;
 use spherule_render::scene::{Slice, SliceMode, SlicePlane};
 use spherule_render::suggest;
@@ -8,7 +8,7 @@ use spherule_render::suggest;
 /// Options for slices.
 #[derive(Clone, Debug, Default, clap::Args)]
 #[command(next_help_heading = "Slices")]
-pub(super) struct SliceArgs {
+pub(in crate::cli) struct SliceArgs {
     /// Cut away the side of a plane where a condition is true, as in 'z>10', 'x+y<3' or 'z>50%', percent of
     /// the cell or else of the bounding box of all spheres; also z=50%, or a normal and a distance
     /// NX,NY,NZ,D, which cut away the side that the normal points to; may be repeated
@@ -29,17 +29,17 @@ fn mode(name: &str) -> Result<SliceMode, String> {
 
 impl SliceArgs {
     /// Returns the planes that cut.
-    pub(super) fn planes(&self) -> &[SlicePlane] {
+    pub(in crate::cli) fn planes(&self) -> &[SlicePlane] {
         &self.planes
     }
 
     /// Returns the treatment of spheres.
-    pub(super) fn mode(&self) -> SliceMode {
+    pub(in crate::cli) fn mode(&self) -> SliceMode {
         self.slice_mode.unwrap_or_default()
     }
 
     /// Settings for the image's metadata.
-    pub(super) fn list(&self) -> List {
+    pub(in crate::cli) fn list(&self) -> List {
         let mut list = List::new();
         if !self.planes.is_empty() {
             let planes: Vec<&str> = self.planes.iter().map(SlicePlane::text).collect();
@@ -51,7 +51,7 @@ impl SliceArgs {
 }
 
 /// Text of a slice: `beyond 10 along [0.0, 0.0, 1.0]: caps`.
-pub(super) fn text(slice: &Slice) -> String {
+pub(in crate::cli) fn text(slice: &Slice) -> String {
     let Slice { normal, distance, mode } = slice;
     format!("beyond {distance} along {:?}: {}", normal.to_array(), mode.name())
 }

@@ -1,8 +1,8 @@
 //! Arguments for the image, its file, performance and reports.
 
+use super::names::{self, BITS, Builder, Device, LANES, LAYERS, PPM, TRAVERSALS};
 use super::settings::SettingArgs;
-use crate::cli::names::{self, BITS, Builder, Device, LANES, LAYERS, PPM, TRAVERSALS};
-use crate::cli::values::{self, THREADS};
+use super::values::{self, THREADS};
 use clap::value_parser;
 use spherule_render::film::Region;
 use spherule_render::image::{Depth, Format, PpmEncoding};

@@ -1,7 +1,7 @@
 //! Options for the lens of the camera.
 
-use crate::cli::settings::List;
-use crate::cli::with_text::{self, WithText};
+use crate::cli::options::lists::List;
+use crate::cli::options::with_text::{self, WithText};
 use serde_json::json;
 use spherule_render::compose::{Focus, LensRequest};
 use spherule_render::scene::Scene;

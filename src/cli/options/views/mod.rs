@@ -2,15 +2,13 @@
 
 mod camera;
 mod lens;
-mod periodic;
-mod style;
 
 use self::camera::UpArg;
 use self::lens::LensArgs;
-pub(super) use self::style::StyleArgs;
-use super::failure::Failure;
+use super::lists::List;
 use super::names::{self, Names};
-use super::settings::List;
+use super::values;
+use crate::cli::failure::Failure;
 use clap::value_parser;
 use serde_json::json;
 use spherule_render::compose::{CameraRequest, CellRequest, LensRequest};
@@ -32,7 +30,7 @@ const PROJECTIONS: Names<Projection> = Names(&[
 
 /// The camera that frames all of a scene from a side of `--view`, and the direction that is up there; `None`
 /// for another word.
-pub(super) fn from_side(
+pub(in crate::cli) fn from_side(
     side: &str,
     scene: &Scene,
     orientation: Option<&Orientation>,
@@ -47,12 +45,12 @@ const PICTURES: std::ops::RangeInclusive<i64> = 1..=100_000;
 /// Options for the simulation cell and the camera.
 #[derive(Clone, Debug, Default, clap::Args)]
 #[command(next_help_heading = "Cell and view")]
-pub(super) struct ViewArgs {
+pub(in crate::cli) struct ViewArgs {
     /// Wrap particles into the cell along its periodic directions
     #[arg(long)]
     wrap: bool,
     /// Replicate the cell NA, NB and NC times along its edges
-    #[arg(long, value_name = "NA,NB,NC", value_parser = periodic::copies)]
+    #[arg(long, value_name = "NA,NB,NC", value_parser = values::copies)]
     replicate: Option<[u32; 3]>,
     /// Draw the cell's edges
     #[arg(long)]
@@ -81,22 +79,22 @@ pub(super) struct ViewArgs {
 
 impl ViewArgs {
     /// Number of images of the turntable; `None` without one.
-    pub(super) fn turntable(&self) -> Option<u32> {
+    pub(in crate::cli) fn turntable(&self) -> Option<u32> {
         self.turntable
     }
 
     /// Returns whether an option needs a particle file with a cell.
-    pub(super) fn needs_cell(&self) -> bool {
+    pub(in crate::cli) fn needs_cell(&self) -> bool {
         self.wrap || self.cell || self.replicate.is_some()
     }
 
     /// Returns whether `--up` is given, which needs a particle file.
-    pub(super) fn sets_up(&self) -> bool {
+    pub(in crate::cli) fn sets_up(&self) -> bool {
         self.up.is_some()
     }
 
     /// Settings for the image's metadata.
-    pub(super) fn list(&self) -> List {
+    pub(in crate::cli) fn list(&self) -> List {
         let mut list = List::new();
         if self.wrap {
             list.insert("wrap".to_owned(), json!(true));
@@ -124,17 +122,17 @@ impl ViewArgs {
     }
 
     /// Returns the lens that is asked for.
-    pub(super) fn lens(&self) -> LensRequest {
+    pub(in crate::cli) fn lens(&self) -> LensRequest {
         self.lens.request()
     }
 
     /// Returns whether a focus is given that the scene's camera ignores.
-    pub(super) fn has_idle_focus(&self, scene: &Scene) -> bool {
+    pub(in crate::cli) fn has_idle_focus(&self, scene: &Scene) -> bool {
         self.lens.is_idle(scene)
     }
 
     /// Rejects options that apply only to particle files.
-    pub(super) fn refuse_cells(&self) -> Result<(), Failure> {
+    pub(in crate::cli) fn refuse_cells(&self) -> Result<(), Failure> {
         if self.needs_cell() {
             let message = "--wrap, --replicate and --cell need a particle file";
             return Err(Failure::usage("render", message));
@@ -143,23 +141,23 @@ impl ViewArgs {
     }
 
     /// Returns what is done to the cell.
-    pub(super) fn cell(&self) -> CellRequest {
+    pub(in crate::cli) fn cell(&self) -> CellRequest {
         CellRequest { wrap: self.wrap, copies: self.replicate, show: self.cell }
     }
 
     /// Returns the direction that is up, if one is chosen.
-    pub(super) fn up(&self) -> Option<Axis> {
+    pub(in crate::cli) fn up(&self) -> Option<Axis> {
         self.up.and_then(|up| up.0)
     }
 
     /// Returns the view that is asked for.
-    pub(super) fn camera(&self) -> CameraRequest {
+    pub(in crate::cli) fn camera(&self) -> CameraRequest {
         let Self { view, projection, margin, turntable, .. } = *self;
         CameraRequest { view, projection, margin, turns: turntable.is_some() }
     }
 
     /// Returns a sentence on what is up and why; `None` if the view does not depend on it.
-    pub(super) fn explain_up(&self, orientation: &Orientation) -> Option<String> {
+    pub(in crate::cli) fn explain_up(&self, orientation: &Orientation) -> Option<String> {
         let reason = orientation.reason;
         let up = match self.view {
             Some(View::Auto) if !reason.is_evident() => return None,
@@ -171,7 +169,7 @@ impl ViewArgs {
     }
 
     /// Angle of an image of the turntable, in radians.
-    pub(super) fn angle(&self, turn: u32) -> f64 {
+    pub(in crate::cli) fn angle(&self, turn: u32) -> f64 {
         TAU * f64::from(turn) / f64::from(self.turntable.unwrap_or(1))
     }
 }

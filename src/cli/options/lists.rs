@@ -1,4 +1,4 @@
-//! Lists of render settings for metadata and reports.
+//! Lists of options and settings, for metadata and reports.
 
 use super::names::PPM;
 use serde_json::{Map, Value, json};
@@ -8,11 +8,11 @@ use spherule_render::scene::Settings;
 use spherule_render::settings::{self, Role, Scope, TONES};
 
 /// Names and values, in order.
-pub(super) type List = Map<String, Value>;
+pub(in crate::cli) type List = Map<String, Value>;
 
 /// Lists all settings that determine the image, by the names of scene files, and nothing else: equal images
 /// have equal lists.
-pub(super) fn list(settings: &Settings, region: Region) -> List {
+pub(in crate::cli) fn of_settings(settings: &Settings, region: Region) -> List {
     let mut list = List::new();
     let integrator = settings::INTEGRATORS.name(&settings.integrator);
     for setting in settings::SETTINGS.iter().filter(|setting| setting.role != Role::Display) {
@@ -43,7 +43,7 @@ pub(super) fn list(settings: &Settings, region: Region) -> List {
 }
 
 /// Lists exposure and tone curve; nothing for formats that store linear radiance.
-pub(super) fn list_encoding(format: Format, options: &WriteOptions) -> List {
+pub(in crate::cli) fn of_encoding(format: Format, options: &WriteOptions) -> List {
     let mut list = List::new();
     if !format.is_linear() {
         list.insert("exposure".to_owned(), json!(options.exposure));
@@ -60,7 +60,7 @@ pub(super) fn list_encoding(format: Format, options: &WriteOptions) -> List {
 }
 
 /// Formats a region as the command line takes it.
-pub(super) fn region_text(region: Region) -> String {
+pub(in crate::cli) fn region_text(region: Region) -> String {
     format!("{},{},{}x{}", region.x, region.y, region.width, region.height)
 }
 

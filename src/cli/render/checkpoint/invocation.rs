@@ -1,7 +1,7 @@
 //! The options of a command line, stored in checkpoints and combined with later ones by `--resume`.
 
-use crate::cli::appearance::BarPlace;
 use crate::cli::command_line::command_line;
+use crate::cli::options::appearance::BarPlace;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Command};
 use std::env;
@@ -27,20 +27,20 @@ fn render_command(program: &Command) -> Command {
 
 /// Options with their values; flags have none.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct CommandOptions(Vec<(String, Vec<OsString>)>);
+pub(in crate::cli) struct CommandOptions(Vec<(String, Vec<OsString>)>);
 
 /// A command line of `spherule render`, and the folder in which it was run.
 #[derive(Default)]
-pub(super) struct Invocation {
+pub(in crate::cli) struct Invocation {
     /// The definition of the command.
-    pub(super) command: Command,
-    pub(super) folder: PathBuf,
-    pub(super) typed: CommandOptions,
+    pub(in crate::cli) command: Command,
+    pub(in crate::cli) folder: PathBuf,
+    pub(in crate::cli) typed: CommandOptions,
 }
 
 impl Invocation {
     /// The command line of this process, which is one of `program`.
-    pub(super) fn of_process(program: &Command) -> Self {
+    pub(in crate::cli) fn of_process(program: &Command) -> Self {
         let command = render_command(program);
         let folder = env::current_dir().unwrap_or_default();
         let line = command_line(program).unwrap_or_default();
@@ -53,7 +53,7 @@ impl Invocation {
 
 impl CommandOptions {
     /// Returns the options that are on the command line of a command.
-    pub(super) fn of(command: &Command, matches: &ArgMatches) -> Self {
+    pub(in crate::cli) fn of(command: &Command, matches: &ArgMatches) -> Self {
         let typed = |arg: &&Arg| {
             let id = arg.get_id().as_str();
             let source = matches.try_contains_id(id).is_ok().then(|| matches.value_source(id));
@@ -68,7 +68,7 @@ impl CommandOptions {
     }
 
     /// Returns the options to store, with `output` as the output file if none was given.
-    pub(super) fn stored(mut self, output: &Path) -> Self {
+    pub(in crate::cli) fn stored(mut self, output: &Path) -> Self {
         self.0.retain(|(id, _)| !NOT_STORED.contains(&id.as_str()));
         if self.0.iter().all(|(id, _)| id != ALWAYS_STORED) {
             self.0.push((ALWAYS_STORED.to_owned(), vec![output.into()]));
@@ -77,7 +77,7 @@ impl CommandOptions {
     }
 
     /// Makes paths absolute, relative to `folder`.
-    pub(super) fn relative_to(mut self, folder: &Path) -> Self {
+    pub(in crate::cli) fn relative_to(mut self, folder: &Path) -> Self {
         let paths = self.0.iter_mut().filter(|(id, _)| PATHS.contains(&id.as_str()));
         for value in paths.flat_map(|(_, values)| values) {
             // `-` is standard input, and a color bar may be inside the image.
@@ -90,13 +90,13 @@ impl CommandOptions {
     }
 
     /// Sets the value of an option.
-    pub(super) fn set(&mut self, id: &str, value: impl Into<OsString>) {
+    pub(in crate::cli) fn set(&mut self, id: &str, value: impl Into<OsString>) {
         self.0.retain(|(other, _)| other != id);
         self.0.push((id.to_owned(), vec![value.into()]));
     }
 
     /// Combines the options with later ones, which override them.
-    pub(super) fn with(mut self, later: Self) -> Self {
+    pub(in crate::cli) fn with(mut self, later: Self) -> Self {
         let again = |id: &String| later.0.iter().any(|(other, _)| other == id);
         self.0.retain(|(id, _)| !again(id));
         self.0.extend(later.0);
@@ -104,7 +104,7 @@ impl CommandOptions {
     }
 
     /// Formats the options as arguments of the command.
-    pub(super) fn arguments(&self, command: &Command) -> Vec<OsString> {
+    pub(in crate::cli) fn arguments(&self, command: &Command) -> Vec<OsString> {
         let (mut options, mut places) = (Vec::new(), Vec::new());
         for (id, values) in &self.0 {
             let arg = command.get_arguments().find(|arg| arg.get_id() == id.as_str());

@@ -1,6 +1,6 @@
 //! Options for the appearance of particles.
 
-use super::settings::List;
+use super::lists::List;
 use super::with_text::{self, WithText};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use serde_json::{Value, json};
@@ -18,7 +18,7 @@ use std::str::FromStr;
 /// Options for the appearance of particles.
 #[derive(Clone, Debug, Default, clap::Args)]
 #[command(next_help_heading = "Particle appearance")]
-pub(super) struct AppearanceArgs {
+pub(in crate::cli) struct AppearanceArgs {
     /// Draw only particles for which EXPR is true, as in 'element != H and z > 10'. Operators: == != < <= > >=,
     /// and, or, not, + - * /, parentheses. Also words of VMD and MDAnalysis: protein, backbone, water, name CA CB,
     /// resid 5 to 10, within 5 of resname LIG, same residue as name ZN. Strings are words or quoted; names with
@@ -118,7 +118,7 @@ pub(super) struct AppearanceArgs {
         requires = "color_by",
         value_parser = bar
     )]
-    pub(super) color_bar: Option<BarPlace>,
+    pub(in crate::cli) color_bar: Option<BarPlace>,
 }
 
 /// The color of arrows.
@@ -141,7 +141,7 @@ fn centering(text: &str) -> Result<ArrowCentering, String> {
 
 /// Place of a color bar.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum BarPlace {
+pub(in crate::cli) enum BarPlace {
     /// A separate file.
     File(PathBuf, Format),
     /// A position in the image.
@@ -238,14 +238,14 @@ fn bar(text: &str) -> Result<BarPlace, String> {
 
 impl BarPlace {
     /// Returns whether the text of an option is a position, not a file.
-    pub(super) fn is_inside(text: &str) -> bool {
+    pub(in crate::cli) fn is_inside(text: &str) -> bool {
         matches!(bar(text), Ok(Self::Inside(_)))
     }
 }
 
 impl AppearanceArgs {
     /// Converts the options for the reader; `radius_scale` multiplies the radii.
-    pub(super) fn looks(&self, radius_scale: f64) -> ParticleStyle {
+    pub(in crate::cli) fn looks(&self, radius_scale: f64) -> ParticleStyle {
         let mut types: Vec<TypeStyle> = self.types.iter().map(|look| (**look).clone()).collect();
         let radii = types.iter_mut().filter_map(|look| look.radius.as_mut());
         radii.for_each(|radius| *radius *= radius_scale);
@@ -266,7 +266,7 @@ impl AppearanceArgs {
     }
 
     /// Settings for the image's metadata; the color range is that of the `legend`.
-    pub(super) fn list(&self, legend: Option<&Legend>) -> List {
+    pub(in crate::cli) fn list(&self, legend: Option<&Legend>) -> List {
         let mut list = List::new();
         with_text::insert(&mut list, "select", &self.select);
         let mut put = |name: &str, value: Value| list.insert(name.to_owned(), value);

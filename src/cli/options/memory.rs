@@ -5,7 +5,7 @@ use spherule_render::memory;
 
 /// Option that limits memory.
 #[derive(Clone, Copy, Debug, clap::Args)]
-pub(super) struct MemoryArgs {
+pub(in crate::cli) struct MemoryArgs {
     /// Maximum memory, as in 500MB, 4GB or 4GiB; commands that would need more stop before they start
     /// [default: free memory, within the cgroup's limit]
     #[arg(long, value_name = "SIZE", allow_hyphen_values = true, value_parser = size)]
@@ -14,7 +14,7 @@ pub(super) struct MemoryArgs {
 
 impl MemoryArgs {
     /// Applies the limit to all later checks of memory.
-    pub(super) fn apply(self) {
+    pub(in crate::cli) fn apply(self) {
         if let Some(bytes) = self.memory_limit {
             memory::limit_to(bytes);
         }

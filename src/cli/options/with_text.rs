@@ -1,13 +1,13 @@
 //! Option values with their original text, which image metadata records.
 
-use super::settings::List;
+use super::lists::List;
 use serde_json::json;
 use std::ops::Deref;
 use std::str::FromStr;
 
 /// A value and its text on the command line.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct WithText<T> {
+pub(in crate::cli) struct WithText<T> {
     text: String,
     value: T,
 }
@@ -29,13 +29,13 @@ impl<T: FromStr> FromStr for WithText<T> {
 }
 
 impl<T> WithText<T> {
-    pub(super) fn text(&self) -> &str {
+    pub(in crate::cli) fn text(&self) -> &str {
         &self.text
     }
 }
 
 /// Adds the texts of values to a list, if there are any.
-pub(super) fn insert<'a, T: 'a>(
+pub(in crate::cli) fn insert<'a, T: 'a>(
     list: &mut List,
     name: &str,
     values: impl IntoIterator<Item = &'a WithText<T>>,

@@ -1,11 +1,11 @@
 //! Options for reading particle files, and a summary of their contents.
 
-use super::failure::Failure;
 use super::frames::{FrameArg, FrameRange};
-use super::output;
-use super::rows::RowInfo;
-use super::settings::List;
+use super::lists::List;
 use super::with_text::{self, WithText};
+use crate::cli::failure::Failure;
+use crate::cli::info::rows::RowInfo;
+use crate::cli::output;
 use indicatif::HumanCount;
 use serde::Serialize;
 use serde_json::json;
@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 /// Options for reading a particle file.
 #[derive(Clone, Debug, Default, clap::Args)]
 #[command(next_help_heading = "Particle files")]
-pub(super) struct ParticleArgs {
+pub(in crate::cli) struct ParticleArgs {
     /// File format [default: detected]: xyzr, csv, xyz, lammps-dump, lammps-data, gro, pdb, mmcif, cif, gsd,
     /// ply, npy, npz, dcd, xtc, trr, netcdf, hdf5, pqr, poscar, sdf, mol2, xsf, cfg
     /// or psf
@@ -79,7 +79,7 @@ fn positive(text: &str) -> Result<f64, String> {
 
 impl ParticleArgs {
     /// Converts the options for the reader.
-    pub(super) fn options(&self) -> ReadOptions {
+    pub(in crate::cli) fn options(&self) -> ReadOptions {
         ReadOptions {
             format: self.format,
             columns: self.columns.as_deref().cloned().unwrap_or_default(),
@@ -101,22 +101,22 @@ impl ParticleArgs {
     }
 
     /// Returns whether any option was given.
-    pub(super) fn any(&self) -> bool {
+    pub(in crate::cli) fn any(&self) -> bool {
         self.frames().is_some() || self.options() != ReadOptions::default()
     }
 
     /// The file that names the particles of a trajectory.
-    pub(super) fn topology(&self) -> Option<&Path> {
+    pub(in crate::cli) fn topology(&self) -> Option<&Path> {
         self.topology.as_deref()
     }
 
     /// The range of frames, if several are rendered.
-    pub(super) fn frames(&self) -> Option<FrameRange> {
+    pub(in crate::cli) fn frames(&self) -> Option<FrameRange> {
         self.frame.as_deref().copied().and_then(FrameArg::range)
     }
 
     /// Settings for the image's metadata; `frame` is the frame of a sequence that the image shows.
-    pub(super) fn list(&self, frame: Option<u64>) -> List {
+    pub(in crate::cli) fn list(&self, frame: Option<u64>) -> List {
         let mut list = List::new();
         if let Some(format) = self.format {
             list.insert("format".to_owned(), json!(format.name()));
@@ -151,7 +151,7 @@ impl ParticleArgs {
     }
 
     /// Rejects a range of frames.
-    pub(super) fn refuse_frames(&self, command: &str) -> Result<(), Failure> {
+    pub(in crate::cli) fn refuse_frames(&self, command: &str) -> Result<(), Failure> {
         if self.frames().is_some() {
             let message = "--frame takes one frame here: first, last or a number from 0";
             return Err(Failure::usage(command, message));
@@ -162,7 +162,7 @@ impl ParticleArgs {
 
 /// Contents of a particle file, with lengths in its own unit.
 #[derive(Serialize)]
-pub(super) struct ParticleInfo {
+pub(in crate::cli) struct ParticleInfo {
     format: &'static str,
     title: String,
     /// Null if they cannot be counted.
@@ -177,7 +177,7 @@ pub(super) struct ParticleInfo {
     /// The direction that is up in the image.
     up: UpInfo,
     /// Null if they are not asked for.
-    pub(super) rows: Option<RowInfo>,
+    pub(in crate::cli) rows: Option<RowInfo>,
 }
 
 #[derive(Serialize)]
@@ -204,7 +204,7 @@ struct CellInfo {
 const SHOWN: usize = 12;
 
 impl ParticleInfo {
-    pub(super) fn new(path: &Path, options: &ReadOptions, particles: &Particles) -> Self {
+    pub(in crate::cli) fn new(path: &Path, options: &ReadOptions, particles: &Particles) -> Self {
         let Orientation { up, reason, .. } = Orientation::of(particles);
         let kinds = &particles.kinds;
         let mut counts = vec![0; kinds.table.len()];
@@ -236,7 +236,7 @@ impl ParticleInfo {
         }
     }
 
-    pub(super) fn print(&self) {
+    pub(in crate::cli) fn print(&self) {
         let title = if self.title.is_empty() { String::new() } else { format!(": {}", self.title) };
         output::print(format_args!("format       {}{title}", self.format));
         if let Some(frames) = self.frames {

@@ -6,25 +6,25 @@ use std::str::FromStr;
 
 /// One frame or a range of frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum FrameArg {
+pub(in crate::cli) enum FrameArg {
     One(FrameChoice),
     Many(FrameRange),
 }
 
 /// A range of frames with a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct FrameRange {
-    pub(super) first: u64,
+pub(in crate::cli) struct FrameRange {
+    pub(in crate::cli) first: u64,
     /// Inclusive; `None` for the last frame of the file.
-    pub(super) last: Option<u64>,
-    pub(super) step: u64,
+    pub(in crate::cli) last: Option<u64>,
+    pub(in crate::cli) step: u64,
 }
 
 impl FrameRange {
     const ALL: Self = Self { first: 0, last: None, step: 1 };
 
     /// Number of frames up to `last`, inclusive.
-    pub(super) fn count_to(self, last: u64) -> u64 {
+    pub(in crate::cli) fn count_to(self, last: u64) -> u64 {
         last.checked_sub(self.first).map_or(0, |span| (span / self.step).saturating_add(1))
     }
 }
@@ -43,14 +43,14 @@ impl fmt::Display for FrameRange {
 }
 
 impl FrameArg {
-    pub(super) fn first(self) -> FrameChoice {
+    pub(in crate::cli) fn first(self) -> FrameChoice {
         match self {
             Self::One(choice) => choice,
             Self::Many(range) => FrameChoice::Index(range.first),
         }
     }
 
-    pub(super) fn range(self) -> Option<FrameRange> {
+    pub(in crate::cli) fn range(self) -> Option<FrameRange> {
         match self {
             Self::One(_) => None,
             Self::Many(range) => Some(range),
