@@ -1,6 +1,6 @@
 //! Color bars and annotations of an image.
 
-use super::job::Job;
+use super::setup::RenderSetup;
 use crate::cli::failure::Failure;
 use crate::cli::options::appearance::BarPlace;
 use crate::cli::write_file::write_file;
@@ -13,14 +13,17 @@ use spherule_render::scene::particles::Legend;
 use spherule_render::scene::{Annotations, Look};
 
 /// Checks that the color bar can be written, without changing anything.
-pub(in crate::cli) fn check_bar(job: &Job) -> Result<(), Failure> {
-    let Some(BarPlace::File(path, _)) = job.color_bar else { return Ok(()) };
+pub(in crate::cli) fn check_bar(setup: &RenderSetup) -> Result<(), Failure> {
+    let Some(BarPlace::File(path, _)) = setup.color_bar else { return Ok(()) };
     check_destination(path).map_err(|error| Failure::Write(path.clone(), error))
 }
 
 /// Rejects a color bar if colors do not represent numbers.
-pub(in crate::cli) fn check_legend(job: &Job, legend: Option<&Legend>) -> Result<(), Failure> {
-    if job.color_bar.is_none() || legend.is_some() {
+pub(in crate::cli) fn check_legend(
+    setup: &RenderSetup,
+    legend: Option<&Legend>,
+) -> Result<(), Failure> {
+    if setup.color_bar.is_none() || legend.is_some() {
         return Ok(());
     }
     let message = "--color-bar needs --color-by with a numeric column";
@@ -29,12 +32,12 @@ pub(in crate::cli) fn check_legend(job: &Job, legend: Option<&Legend>) -> Result
 
 /// Writes the color bar, as high as the image, if it has a file; an error if colors do not represent numbers.
 pub(in crate::cli) fn write_bar(
-    job: &Job,
+    setup: &RenderSetup,
     legend: Option<&Legend>,
     height: u32,
 ) -> Result<(), Failure> {
-    check_legend(job, legend)?;
-    let (Some(BarPlace::File(path, format)), Some(legend)) = (job.color_bar, legend) else {
+    check_legend(setup, legend)?;
+    let (Some(BarPlace::File(path, format)), Some(legend)) = (setup.color_bar, legend) else {
         return Ok(());
     };
     let Legend { scale, label } = legend;

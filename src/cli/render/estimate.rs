@@ -1,6 +1,6 @@
 //! Estimates of the memory of a render.
 
-use super::job::Job;
+use super::setup::RenderSetup;
 use crate::cli::contents::spheres;
 use crate::cli::failure::Failure;
 use spherule_render::denoise::Denoiser;
@@ -49,23 +49,23 @@ pub(super) struct Estimate {
 
 impl Estimate {
     /// Estimates the memory needed in addition to a loaded scene.
-    pub(super) fn new(scene: &Scene, region: Region, job: &Job, denoised: bool) -> Self {
+    pub(super) fn new(scene: &Scene, region: Region, setup: &RenderSetup, denoised: bool) -> Self {
         let footprint = Footprint::of(scene);
         Self {
             region,
             spheres: footprint.spheres,
-            layered: !job.encoding.layers.is_empty(),
+            layered: !setup.encoding.layers.is_empty(),
             denoised,
             build: footprint.peak().saturating_sub(footprint.scene()),
             scene: footprint.scene(),
             world: footprint.resident(),
-            film: Film::bytes(region, job.encoding.needs_statistics() || denoised),
-            output: output(job, &scene.look, region).max(if denoised {
+            film: Film::bytes(region, setup.encoding.needs_statistics() || denoised),
+            output: output(setup, &scene.look, region).max(if denoised {
                 Denoiser::bytes(region)
             } else {
                 0
             }),
-            threads: job.threads as u64 * WORKSPACE,
+            threads: setup.threads as u64 * WORKSPACE,
         }
     }
 
@@ -112,9 +112,9 @@ impl Estimate {
 
 /// Bytes of the layers or of the encoded file, whichever is more, because layers are dropped before the file
 /// is encoded from their channels.
-fn output(job: &Job, look: &Look, region: Region) -> u64 {
+fn output(setup: &RenderSetup, look: &Look, region: Region) -> u64 {
     let pixels = u64::from(region.width) * u64::from(region.height);
-    let layers = job.encoding.wanted_layers();
+    let layers = setup.encoding.wanted_layers();
     let traced = layers.iter().any(|layer| !layer.is_statistic());
     let drawn = match (look.is_plain(), look.is_transparent()) {
         (true, _) => 0,
@@ -124,7 +124,7 @@ fn output(job: &Job, look: &Look, region: Region) -> u64 {
     let gathered = if traced || drawn > 0 { Layers::bytes(region) + pixels * drawn } else { 0 };
     let channels: u64 = layers.iter().map(|layer| layer.channel_count() as u64).sum();
     let value = size_of::<f32>() as u64;
-    let file = match job.format {
+    let file = match setup.format {
         // Channels, and the compressed file.
         Format::Exr => (3 + channels) * 2 * value,
         _ => CODES,

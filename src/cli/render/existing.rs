@@ -1,8 +1,8 @@
 //! Detection of existing images for `--skip-existing`, by their metadata.
 
-use super::job::Job;
 use super::metadata::{self, BEFORE, DENOISED, INTERRUPTED, SAMPLES_TAKEN, SCENE};
 use super::prepare::PlacedScene;
+use super::setup::RenderSetup;
 use crate::cli::output;
 use spherule_render::image::{Image, Metadata, read_metadata};
 
@@ -11,32 +11,32 @@ const RESULTS: [&str; 6] = ["rounds", SAMPLES_TAKEN, "error", "error bound", DEN
 
 /// Returns whether the output file already is the image to render. Prints the reason if it exists but is
 /// another image.
-pub(super) fn is_up_to_date(job: &Job, placed: &PlacedScene) -> bool {
-    if !job.sequence.skip_existing || !job.output.exists() {
+pub(super) fn is_up_to_date(setup: &RenderSetup, placed: &PlacedScene) -> bool {
+    if !setup.sequence.skip_existing || !setup.output.exists() {
         return false;
     }
-    let Some(why) = difference(job, placed) else { return true };
-    if !job.report.quiet {
+    let Some(why) = difference(setup, placed) else { return true };
+    if !setup.report.quiet {
         output::note(format_args!(
             "{}: already exists, but {why}; rendering it again",
-            job.output.display()
+            setup.output.display()
         ));
     }
     false
 }
 
 /// Returns the reason why the file is another image.
-fn difference(job: &Job, placed: &PlacedScene) -> Option<String> {
-    let found = match read_metadata(&job.output) {
+fn difference(setup: &RenderSetup, placed: &PlacedScene) -> Option<String> {
+    let found = match read_metadata(&setup.output) {
         Ok(found) => found,
         Err(error) => return Some(format!("cannot be read ({error})")),
     };
     let timed = placed.scene.settings.has_target();
-    if let Some(why) = differs(&metadata::expected(job, placed), &found, timed) {
+    if let Some(why) = differs(&metadata::expected(setup, placed), &found, timed) {
         return Some(why);
     }
     // A truncated file may have complete metadata.
-    match Image::read(&job.output) {
+    match Image::read(&setup.output) {
         Err(error) => Some(format!("cannot be read ({error})")),
         Ok(image) if (image.width, image.height) != (placed.region.width, placed.region.height) => {
             Some(format!("its size is {}x{}", image.width, image.height))

@@ -3,9 +3,9 @@
 use super::appearance::{self, draw_annotations, write_bar};
 use super::checkpoint::resume::Resumed;
 use super::checkpoint::writer::CheckpointWriter;
-use super::job::Job;
 use super::notices::Notices;
 use super::prepare::{PlacedScene, Prepared};
+use super::setup::RenderSetup;
 use super::summary::Summary;
 use super::terminal::Terminal;
 use super::video::Video;
@@ -43,50 +43,53 @@ pub(super) struct Session<'a> {
     pub(super) video: Option<Video>,
 }
 
-/// Renders the image of a job without a sequence.
+/// Renders the image of a setup without a sequence.
 pub(super) fn render_image(
-    job: &Job,
+    setup: &RenderSetup,
     writer: Option<&CheckpointWriter>,
     resumed: Option<Resumed>,
 ) -> Result<ExitCode, Failure> {
     let mut session = Session { writer, ..Session::default() };
-    render_placed(job, PlacedScene::load(job, None)?, &mut session, resumed)
+    render_placed(setup, PlacedScene::load(setup, None)?, &mut session, resumed)
 }
 
 /// Renders the image of a scene, unless it exists and is skipped.
 pub(super) fn render_placed(
-    job: &Job,
+    setup: &RenderSetup,
     placed: PlacedScene,
     session: &mut Session,
     resumed: Option<Resumed>,
 ) -> Result<ExitCode, Failure> {
-    write_bar(job, placed.legend.as_ref(), placed.scene.settings.height)?;
+    write_bar(setup, placed.legend.as_ref(), placed.scene.settings.height)?;
     // After a signal, checks are left out: the render is interrupted at once and saved.
-    if resumed.is_none() && signals::end_pause().is_none() && existing::is_up_to_date(job, &placed)
+    if resumed.is_none()
+        && signals::end_pause().is_none()
+        && existing::is_up_to_date(setup, &placed)
     {
-        let notify = if job.is_of_sequence() { job.report.verbose } else { !job.report.quiet };
-        session.notices.count_kept(&job.output, notify);
+        let notify =
+            if setup.is_of_sequence() { setup.report.verbose } else { !setup.report.quiet };
+        session.notices.count_kept(&setup.output, notify);
         return Ok(ExitCode::SUCCESS);
     }
-    let mut prepared = placed.build(job)?;
-    let unfinished = resumed.map(|resumed| resumed.into_render(job, &prepared)).transpose()?;
-    finish_image(job, &mut prepared, session, unfinished)
+    let mut prepared = placed.build(setup)?;
+    let unfinished = resumed.map(|resumed| resumed.into_render(setup, &prepared)).transpose()?;
+    finish_image(setup, &mut prepared, session, unfinished)
 }
 
 fn finish_image(
-    job: &Job,
+    setup: &RenderSetup,
     prepared: &mut Prepared,
     session: &mut Session,
     unfinished: Option<ResumableRender>,
 ) -> Result<ExitCode, Failure> {
-    prepared.report(job, &mut session.notices);
-    let traced = trace(job, prepared, session.writer, unfinished)?;
-    let finished = finish_traced(job, prepared, session, &traced);
+    prepared.report(setup, &mut session.notices);
+    let traced = trace(setup, prepared, session.writer, unfinished)?;
+    let finished = finish_traced(setup, prepared, session, &traced);
     // A signal while the image is written ends a sequence, too. If something must be saved or removed, the
     // next image does so: it is interrupted at once. But no input is awaited that may never come.
-    let stream = job.common.as_ref().is_some_and(|common| !common.frames_all);
+    let stream = setup.common.as_ref().is_some_and(|common| !common.frames_all);
     let saves = !stream && (session.writer.is_some() || session.video.is_some());
-    let goes_on = saves && job.place.is_some_and(|place| !place.last);
+    let goes_on = saves && setup.place.is_some_and(|place| !place.last);
     let signal = if goes_on { traced.signal } else { traced.signal.or(signals::release()) };
     finished?;
     Ok(signal.map_or(ExitCode::SUCCESS, ExitCode::from))
@@ -94,18 +97,18 @@ fn finish_image(
 
 /// Writes the image or the part.
 fn finish_traced(
-    job: &Job,
+    setup: &RenderSetup,
     prepared: &mut Prepared,
     session: &mut Session,
     traced: &Traced,
 ) -> Result<(), Failure> {
-    if let (Some(part), Some(writer)) = (job.part, session.writer) {
-        return part::finish(job, part, prepared, writer, &traced.render);
+    if let (Some(part), Some(writer)) = (setup.part, session.writer) {
+        return part::finish(setup, part, prepared, writer, &traced.render);
     }
-    if job.is_of_sequence() && !traced.render.is_complete() {
-        let output = job.output.display();
+    if setup.is_of_sequence() && !traced.render.is_complete() {
+        let output = setup.output.display();
         output::warn(format_args!("interrupted: {output} is incomplete and is not written"));
-        traced.advise(job);
+        traced.advise(setup);
         return Ok(());
     }
     if traced.render.samples().total == 0 {
@@ -116,37 +119,38 @@ fn finish_traced(
     if let Some(Judged { denoised: Some(denoised), .. }) = &traced.judged {
         render.image.clone_from(&denoised.image);
     }
-    write(job, prepared, session, &mut render, traced.judged.as_ref())?;
-    traced.report(job, prepared, &render);
+    write(setup, prepared, session, &mut render, traced.judged.as_ref())?;
+    traced.report(setup, prepared, &render);
     Ok(())
 }
 
 /// Draws overlays, writes the image and its layers, and prints a summary.
 fn write(
-    job: &Job,
+    setup: &RenderSetup,
     prepared: &mut Prepared,
     session: &mut Session,
     render: &mut Render,
     judged: Option<&Judged>,
 ) -> Result<(), Failure> {
-    let matte = draw_over(job, prepared, session, render)?;
-    let options = metadata::write_options(job, prepared, render, judged);
-    let mut channels = layers::channels(job, prepared, render)?;
-    channels.extend(matte.map(|matte| layers::alpha(&matte, job.format)));
+    let matte = draw_over(setup, prepared, session, render)?;
+    let options = metadata::write_options(setup, prepared, render, judged);
+    let mut channels = layers::channels(setup, prepared, render)?;
+    channels.extend(matte.map(|matte| layers::alpha(&matte, setup.format)));
     if let Some(video) = &mut session.video {
         video.add(&render.image, &options)?;
     } else {
-        let file = render.image.encode(job.format, &channels, &options)?;
-        write_file(&job.output, &page::file(job, prepared, file, &options)?)?;
+        let file = render.image.encode(setup.format, &channels, &options)?;
+        write_file(&setup.output, &page::file(setup, prepared, file, &options)?)?;
     }
-    Summary::new(job, prepared, render, judged, &options).report(job.report, &mut session.notices);
+    Summary::new(setup, prepared, render, judged, &options)
+        .report(setup.report, &mut session.notices);
     Ok(())
 }
 
 /// Draws the look and, unless they are vectors on a page, the annotations over an image; returns the matte
 /// of a transparent background.
 fn draw_over(
-    job: &Job,
+    setup: &RenderSetup,
     prepared: &mut Prepared,
     session: &mut Session,
     render: &mut Render,
@@ -157,8 +161,8 @@ fn draw_over(
     // The looks of interrupted images are finished, too.
     let never = AtomicBool::new(false);
     let mut canvas = Canvas::with_look(look, world, settings, region, render, &never)?;
-    if job.page.is_none() {
-        let turns = job.turn.is_some();
+    if setup.page.is_none() {
+        let turns = setup.turn.is_some();
         if !draw_annotations((annotations, look), &prepared.world, &mut canvas, turns) {
             session.notices.warn(appearance::OVERLAP);
         }
@@ -168,16 +172,16 @@ fn draw_over(
 
 /// Starts or resumes a render.
 fn trace(
-    job: &Job,
+    setup: &RenderSetup,
     prepared: &Prepared,
     writer: Option<&CheckpointWriter>,
     unfinished: Option<ResumableRender>,
 ) -> Result<Traced, RenderError> {
-    let meter = Meter::new(job.report.quiet || job.report.terminal);
+    let meter = Meter::new(setup.report.quiet || setup.report.terminal);
     let options = Options {
-        tracer: job.tracer,
+        tracer: setup.tracer,
         region: Some(prepared.region),
-        statistics: job.encoding.needs_statistics() || prepared.denoise.is_some(),
+        statistics: setup.encoding.needs_statistics() || prepared.denoise.is_some(),
         features: prepared.denoise.is_some(),
         cancel: Some(signals::stop()),
         ..Options::default()
@@ -192,13 +196,13 @@ fn trace(
     let options = Options { judge: denoiser.is_some().then_some(&judge as &Judge), ..options };
     let begin = || ResumableRender::begin_part(world, settings, &options, prepared.part.clone());
     let mut render = unfinished.map_or_else(begin, Ok)?;
-    let caption = writer.map(|_| part::caption(job, prepared)).unwrap_or_default();
-    let mut terminal = job.report.terminal.then(|| Terminal::new(settings));
+    let caption = writer.map(|_| part::caption(setup, prepared)).unwrap_or_default();
+    let mut terminal = setup.report.terminal.then(|| Terminal::new(settings));
     let after = |pause: Option<Duration>| pause.map(|pause| Instant::now() + pause);
     // Between the images of a sequence, checkpoints are written only when they are due.
-    let last = job.place.is_none_or(|place| place.last);
+    let last = setup.place.is_none_or(|place| place.last);
     let (signal, kept) = loop {
-        let due = writer.and_then(|writer| writer.due(job.checkpoints));
+        let due = writer.and_then(|writer| writer.due(setup.checkpoints));
         let drawn = after(terminal.as_ref().map(Terminal::pause));
         let stop = due.into_iter().chain(drawn).min();
         let show = |progress| {
@@ -215,7 +219,7 @@ fn trace(
         }
         let is_due = due.is_some_and(|due| due <= Instant::now());
         let keep = writer.filter(|_| is_due || ended && (last || end == End::Cancelled));
-        let kept = keep.is_some_and(|writer| writer.save(job, prepared, &caption, &render));
+        let kept = keep.is_some_and(|writer| writer.save(setup, prepared, &caption, &render));
         if ended {
             break (signal.filter(|_| end == End::Cancelled), kept);
         }
@@ -230,8 +234,8 @@ fn trace(
 
 impl Traced {
     /// Warns of an incomplete image.
-    fn report(&self, job: &Job, prepared: &Prepared, render: &Render) {
-        let output = job.output.display();
+    fn report(&self, setup: &RenderSetup, prepared: &Prepared, render: &Render) {
+        let output = setup.output.display();
         if !render.complete && prepared.scene.settings.has_target() {
             output::warn(format_args!("interrupted: {output} is incomplete"));
         } else if !render.complete {
@@ -239,13 +243,13 @@ impl Traced {
             output::warn(format_args!("interrupted: {output} has {percent:.1} % of the samples"));
         }
         if matches!(render.end, End::Cancelled | End::Time) {
-            self.advise(job);
+            self.advise(setup);
         }
     }
 
     /// Prints the command that resumes the render, if a checkpoint was written.
-    fn advise(&self, job: &Job) {
-        if let Some(resume_command) = self.resume_command.as_ref().filter(|_| !job.report.quiet) {
+    fn advise(&self, setup: &RenderSetup) {
+        if let Some(resume_command) = self.resume_command.as_ref().filter(|_| !setup.report.quiet) {
             output::note(resume_command);
         }
     }

@@ -1,7 +1,7 @@
 //! Layers of the image file (AOVs).
 
-use super::job::Job;
 use super::prepare::Prepared;
+use super::setup::RenderSetup;
 use spherule_render::film::Region;
 use spherule_render::image::{Channel, Format, Values};
 use spherule_render::layers::{Layers, layers};
@@ -11,18 +11,18 @@ use spherule_render::scene::Settings;
 
 /// Renders the requested channels.
 pub(super) fn channels(
-    job: &Job,
+    setup: &RenderSetup,
     prepared: &Prepared,
     render: &Render,
 ) -> Result<Vec<Channel>, RenderError> {
-    let wanted = job.encoding.wanted_layers();
+    let wanted = setup.encoding.wanted_layers();
     if wanted.is_empty() {
         return Ok(Vec::new());
     }
     // No more samples than the image has, so that an interrupted render ends soon.
     let settings = Settings { spp: render.samples.most.max(1), ..prepared.scene.settings.clone() };
     let options =
-        Options { tracer: job.tracer, region: Some(prepared.region), ..Options::default() };
+        Options { tracer: setup.tracer, region: Some(prepared.region), ..Options::default() };
     let mut layers = if wanted.iter().all(|layer| layer.is_statistic()) {
         let Region { width, height, .. } = prepared.region;
         Layers { width, height, pixels: Vec::new(), statistics: None }

@@ -3,8 +3,8 @@
 //! Metadata contain everything that determines the image, and nothing else: no time, machine or threads.
 //! Equal images have equal files.
 
-use super::job::Job;
 use super::prepare::{PlacedScene, Prepared};
+use super::setup::RenderSetup;
 use crate::cli::options::appearance::BarPlace;
 use crate::cli::options::image::EncodingArgs;
 use crate::cli::options::lists::{self, List};
@@ -43,7 +43,7 @@ pub(super) const INTERRUPTED: &str = "interrupted";
 
 /// Returns the encoding options and metadata of the image file.
 pub(super) fn write_options(
-    job: &Job,
+    setup: &RenderSetup,
     prepared: &Prepared,
     render: &Render,
     judged: Option<&Judged>,
@@ -52,42 +52,42 @@ pub(super) fn write_options(
         title: &prepared.title,
         settings: &prepared.scene.settings,
         region: prepared.region,
-        looks: &prepared.looks(job),
+        looks: &prepared.looks(setup),
     };
-    subject.write_options(job.encoding, job.format, render, judged)
+    subject.write_options(setup.encoding, setup.format, render, judged)
 }
 
 /// Returns the metadata of a complete image, without results of the render.
-pub(super) fn expected(job: &Job, placed: &PlacedScene) -> Metadata {
+pub(super) fn expected(setup: &RenderSetup, placed: &PlacedScene) -> Metadata {
     let PlacedScene { scene, region, legend, identity, stored, .. } = placed;
     let listed = stored.as_ref().map(|stored| stored.metadata.as_slice());
     let subject = Subject {
-        title: &job.source.title(scene),
+        title: &setup.source.title(scene),
         settings: &scene.settings,
         region: *region,
-        looks: &looks(job, listed, legend.as_ref(), identity.as_ref()),
+        looks: &looks(setup, listed, legend.as_ref(), identity.as_ref()),
     };
-    subject.describe(job.format, &subject.encoding(job.encoding, job.format))
+    subject.describe(setup.format, &subject.encoding(setup.encoding, setup.format))
 }
 
 impl Prepared {
     /// Returns the settings for particles, as metadata list them.
-    pub(super) fn looks(&self, job: &Job) -> Vec<(String, String)> {
-        looks(job, self.looks.as_deref(), self.legend.as_ref(), self.identity.as_ref())
+    pub(super) fn looks(&self, setup: &RenderSetup) -> Vec<(String, String)> {
+        looks(setup, self.looks.as_deref(), self.legend.as_ref(), self.identity.as_ref())
     }
 }
 
 /// Returns the settings for particles as metadata, with the scene's identity for images of a sequence. The
 /// list of a prepared scene replaces the options.
 pub(super) fn looks(
-    job: &Job,
+    setup: &RenderSetup,
     prepared: Option<&[(String, String)]>,
     legend: Option<&Legend>,
     identity: Option<&Identity>,
 ) -> Vec<(String, String)> {
-    let mut listed = prepared.map_or_else(|| typed(job, legend), <[_]>::to_vec);
-    let Some(identity) = identity.filter(|_| job.is_identified()) else { return listed };
-    let layers: Vec<&str> = job.encoding.wanted_layers().into_iter().map(Layer::name).collect();
+    let mut listed = prepared.map_or_else(|| typed(setup, legend), <[_]>::to_vec);
+    let Some(identity) = identity.filter(|_| setup.is_identified()) else { return listed };
+    let layers: Vec<&str> = setup.encoding.wanted_layers().into_iter().map(Layer::name).collect();
     if !layers.is_empty() {
         listed.push(("layers".to_owned(), layers.join(",")));
     }
@@ -96,12 +96,12 @@ pub(super) fn looks(
 }
 
 /// Returns the settings for particles of the command line.
-fn typed(job: &Job, legend: Option<&Legend>) -> Vec<(String, String)> {
-    let (particles, looks) = job.typed;
-    let listed = particles.list(job.frame).into_iter().chain(looks.list(legend));
-    let listed = listed.chain(job.slices.list()).chain(job.views.list()).chain(job.style.list());
-    let mut listed = texts(listed.chain(job.annotations.list()).collect());
-    if let Some(BarPlace::Inside(position)) = job.color_bar {
+fn typed(setup: &RenderSetup, legend: Option<&Legend>) -> Vec<(String, String)> {
+    let listed = setup.particles.list(setup.frame).into_iter().chain(setup.looks.list(legend));
+    let listed =
+        listed.chain(setup.slices.list()).chain(setup.views.list()).chain(setup.style.list());
+    let mut listed = texts(listed.chain(setup.annotations.list()).collect());
+    if let Some(BarPlace::Inside(position)) = setup.color_bar {
         listed.push(("color_bar".to_owned(), position.name().to_owned()));
     }
     listed

@@ -7,7 +7,6 @@ mod estimate;
 mod existing;
 mod files;
 mod image;
-mod job;
 mod layers;
 mod memory;
 mod metadata;
@@ -19,6 +18,7 @@ mod part;
 mod prepare;
 mod prepared_file;
 mod sequence;
+mod setup;
 mod summary;
 mod terminal;
 mod video;
@@ -31,12 +31,12 @@ use self::checkpoint::resume::Resumed;
 use self::checkpoint::writer::CheckpointWriter;
 use self::files::files;
 use self::image::render_image;
-pub(super) use self::job::{Job, check_alpha};
 pub(super) use self::layers::alpha;
 pub(super) use self::metadata::{Subject, push_denoised, push_error};
 #[cfg(test)]
 pub(super) use self::prepare::PlacedScene;
 pub(super) use self::prepare::frame_number;
+pub(super) use self::setup::{RenderSetup, check_alpha};
 pub(super) use self::summary::warnings;
 use super::failure::Failure;
 use super::{output, picture_file, processor};
@@ -69,18 +69,18 @@ fn run_as(
     mut resumed: Option<Resumed>,
 ) -> Result<ExitCode, Failure> {
     prepared_file::refuse_sequence(args)?;
-    let job = Job::new(args)?;
-    if !job.report.quiet
+    let setup = RenderSetup::new(args)?;
+    if !setup.report.quiet
         && let Some(advice) = processor::advice()
     {
         output::note(advice);
     }
     check_stream(args)?;
-    check_bar(&job)?;
-    terminal::check(job.report.terminal)?;
+    check_bar(&setup)?;
+    terminal::check(setup.report.terminal)?;
     if args.is_sequence() {
         let files = files(args);
-        return job.pool()?.install(|| sequence::run(&job, &files, writer, resumed));
+        return setup.pool()?.install(|| sequence::run(&setup, &files, writer, resumed));
     }
     if let Some(resumed) = resumed.take_if(|_| args.sequence.first_picture.is_some()) {
         return Err(
@@ -88,10 +88,10 @@ fn run_as(
         );
     }
     if let Some(file) = &args.prepare {
-        return job.pool()?.install(|| prepared_file::write(&job, file));
+        return setup.pool()?.install(|| prepared_file::write(&setup, file));
     }
-    picture_file::check(&job.output)?;
-    job.pool()?.install(|| render_image(&job, writer, resumed))
+    picture_file::check(&setup.output)?;
+    setup.pool()?.install(|| render_image(&setup, writer, resumed))
 }
 
 /// Reserves standard output for a single image; rejects it for parts and sequences.

@@ -1,6 +1,6 @@
 //! Notes about options that have no effect.
 
-use super::job::Job;
+use super::setup::RenderSetup;
 use crate::cli::options::settings::option_name;
 use spherule_render::World;
 use spherule_render::graphics;
@@ -13,7 +13,7 @@ use spherule_render::trace::Traversal;
 const ROULETTE_BEGINS: u32 = 4;
 
 /// Returns a sentence for each option that has no effect.
-pub(super) fn notes(job: &Job, scene: &Scene, world: &World) -> Vec<String> {
+pub(super) fn notes(setup: &RenderSetup, scene: &Scene, world: &World) -> Vec<String> {
     let settings = &scene.settings;
     let mut notes = Vec::new();
     let mut note = |asked: bool, idle: bool, name: &str, why: &str| {
@@ -21,46 +21,51 @@ pub(super) fn notes(job: &Job, scene: &Scene, world: &World) -> Vec<String> {
             notes.push(format!("{name} has no effect: {why}"));
         }
     };
-    let picture = &job.picture.settings;
+    let picture = &setup.picture.settings;
     for setting in picture.given() {
         let name = format!("--{}", option_name(setting));
         let reason = idle_reason(setting, settings, world);
         note(true, reason.is_some(), &name, reason.as_deref().unwrap_or_default());
     }
     let ao = matches!(settings.integrator, Integrator::Ao { .. });
-    let materials = job.request.style.types.iter().any(|look| look.material.is_some());
+    let materials = setup.request.style.types.iter().any(|look| look.material.is_some());
     let matte = "the integrator ao ignores materials";
     note(materials, ao, "--type with a material", matte);
     let short = settings.depth.is_some_and(|depth| depth < ROULETTE_BEGINS);
     let late = !ao && short && picture.value("roulette") == Some(Value::Word("throughput"));
     note(late, true, "--roulette throughput", "it starts at the fourth bounce, beyond --depth");
-    let alone = matches!(job.speed.traversal, Traversal::Single | Traversal::Stream);
+    let alone = matches!(setup.speed.traversal, Traversal::Single | Traversal::Stream);
     note(
-        job.speed.lanes.is_some(),
+        setup.speed.lanes.is_some(),
         alone,
         "--lanes",
         "--traversal scalar and stream trace no packets",
     );
-    let encoding = job.encoding;
-    let linear = job.format.is_linear();
-    let holds = format!("{} files store linear radiance", job.format);
-    note(exposed(job, settings), linear, "exposure", &holds);
-    note(toned(job, settings), linear, "tone", &holds);
+    let encoding = setup.encoding;
+    let linear = setup.format.is_linear();
+    let holds = format!("{} files store linear radiance", setup.format);
+    note(exposed(setup, settings), linear, "exposure", &holds);
+    note(toned(setup, settings), linear, "tone", &holds);
     note(encoding.bits.is_some(), linear, "--bits", "EXR and PFM files store 32-bit floats");
-    let eight = !linear && !job.format.has_sixteen_bits();
+    let eight = !linear && !setup.format.has_sixteen_bits();
     let deep = encoding.bits.is_some_and(|bits| bits != Depth::Eight);
-    note(deep, eight, "--bits", &format!("{} files store 8 bits", job.format));
-    let lossless = job.format != Format::Jpeg;
+    note(deep, eight, "--bits", &format!("{} files store 8 bits", setup.format));
+    let lossless = setup.format != Format::Jpeg;
     note(encoding.quality.is_some(), lossless, "--quality", "the output is not JPEG");
-    let part = job.part.is_some();
+    let part = setup.part.is_some();
     note(encoding.bits.is_some(), part, "--bits", "parts are not images; use it with merge");
     note(encoding.ppm.is_some(), part, "--ppm", "parts are not images; use it with merge");
-    note(encoding.ppm.is_some(), job.format != Format::Ppm, "--ppm", "the output is not PPM");
-    let pdf = job.page == Some(graphics::Format::Pdf);
+    note(encoding.ppm.is_some(), setup.format != Format::Ppm, "--ppm", "the output is not PPM");
+    let pdf = setup.page == Some(graphics::Format::Pdf);
     note(deep, pdf, "--bits", "PDF files store 8 bits");
-    note(job.views.has_idle_focus(scene), true, "--focus", "the lens is a pinhole; set --aperture");
+    note(
+        setup.views.has_idle_focus(scene),
+        true,
+        "--focus",
+        "the lens is a pinhole; set --aperture",
+    );
     let bare = scene.annotations.is_empty();
-    let letters = job.annotations.lettering();
+    let letters = setup.annotations.lettering();
     note(letters.is_some(), bare, letters.unwrap_or_default(), "the image has no annotations");
     notes
 }
@@ -88,11 +93,11 @@ fn idle_reason(setting: &Setting, settings: &Settings, world: &World) -> Option<
 }
 
 /// Returns whether the command or the scene sets an exposure.
-fn exposed(job: &Job, settings: &Settings) -> bool {
-    job.encoding.display.value("exposure").is_some() || settings.exposure != 0.0
+fn exposed(setup: &RenderSetup, settings: &Settings) -> bool {
+    setup.encoding.display.value("exposure").is_some() || settings.exposure != 0.0
 }
 
 /// Returns whether the command or the scene sets a tone curve.
-fn toned(job: &Job, settings: &Settings) -> bool {
-    job.encoding.display.value("tone").is_some() || settings.tone != Tone::Linear
+fn toned(setup: &RenderSetup, settings: &Settings) -> bool {
+    setup.encoding.display.value("tone").is_some() || settings.tone != Tone::Linear
 }

@@ -1,7 +1,7 @@
 //! Pages: SVG and PDF files of an image with its annotations as vectors.
 
-use super::job::Job;
 use super::prepare::Prepared;
+use super::setup::RenderSetup;
 use crate::cli::failure::Failure;
 use spherule_render::graphics::Page;
 use spherule_render::image::WriteOptions;
@@ -11,14 +11,14 @@ use spherule_render::scene::Scene;
 
 /// Returns the content of the output file: the image, which is encoded already, or a page with it.
 pub(super) fn file(
-    job: &Job,
+    setup: &RenderSetup,
     prepared: &Prepared,
     image: Vec<u8>,
     options: &WriteOptions,
 ) -> Result<Vec<u8>, Failure> {
-    let Some(format) = job.page else { return Ok(image) };
+    let Some(format) = setup.page else { return Ok(image) };
     let Scene { annotations, look, .. } = &prepared.scene;
-    let turns = job.turn.is_some();
+    let turns = setup.turn.is_some();
     let drawing = annotations::draw(annotations, &prepared.world, look, turns).drawing;
     let page = Page {
         size: (prepared.region.width, prepared.region.height),

@@ -7,8 +7,8 @@ use super::appearance::OVERLAP;
 use super::args::RenderArgs;
 use super::checkpoint::invocation::CommandOptions;
 use super::checkpoint::writer::CheckpointWriter;
-use super::job::Job;
 use super::prepare::Prepared;
+use super::setup::RenderSetup;
 use crate::cli::failure::Failure;
 use crate::cli::output;
 use spherule_render::checkpoint::Caption;
@@ -72,33 +72,33 @@ pub(super) fn add_checkpoint(
 }
 
 /// Returns the data for merging other than samples, without layers.
-pub(super) fn caption(job: &Job, prepared: &Prepared) -> Caption {
+pub(super) fn caption(setup: &RenderSetup, prepared: &Prepared) -> Caption {
     let title = prepared.title.clone();
     Caption {
         title,
-        looks: prepared.looks(job),
+        looks: prepared.looks(setup),
         drawn_over: !prepared.scene.look.is_plain(),
-        annotations: annotation_drawing(job, prepared).drawing.to_bytes(),
-        layers: job.encoding.wanted_layers(),
+        annotations: annotation_drawing(setup, prepared).drawing.to_bytes(),
+        layers: setup.encoding.wanted_layers(),
         ..Caption::default()
     }
 }
 
 /// Returns the drawing of the annotations over the whole image.
-fn annotation_drawing(job: &Job, prepared: &Prepared) -> AnnotationDrawing {
+fn annotation_drawing(setup: &RenderSetup, prepared: &Prepared) -> AnnotationDrawing {
     let Scene { look, annotations, .. } = &prepared.scene;
-    annotations::draw(annotations, &prepared.world, look, job.turn.is_some())
+    annotations::draw(annotations, &prepared.world, look, setup.turn.is_some())
 }
 
 /// Completes the file of a part, and prints a summary.
 pub(super) fn finish(
-    job: &Job,
+    setup: &RenderSetup,
     part: Part,
     prepared: &Prepared,
     writer: &CheckpointWriter,
     render: &ResumableRender,
 ) -> Result<(), Failure> {
-    let mut caption = caption(job, prepared);
+    let mut caption = caption(setup, prepared);
     let file = writer.path().display();
     if !render.is_complete() {
         let taken = render.samples().total;
@@ -110,20 +110,20 @@ pub(super) fn finish(
     if caption.layers.iter().any(|layer: &Layer| !layer.is_statistic()) {
         caption.tiles = known_tiles(part, render.part(), prepared.region);
         let options =
-            Options { tracer: job.tracer, region: Some(prepared.region), ..Options::default() };
+            Options { tracer: setup.tracer, region: Some(prepared.region), ..Options::default() };
         let (world, settings) = (&prepared.world, &prepared.scene.settings);
         let tiles = caption.tiles.clone();
         caption.features = features(world, settings, &options, &caption.layers, tiles)?;
     }
     writer
-        .write(job, prepared, &caption, render)
+        .write(setup, prepared, &caption, render)
         .map_err(|error| Failure::Write(writer.path().to_owned(), error))?;
-    if !annotation_drawing(job, prepared).fits {
+    if !annotation_drawing(setup, prepared).fits {
         output::warn(OVERLAP);
     }
-    if !job.report.quiet {
-        let picture = job.output.display();
-        let all = path(&job.output, part, "*");
+    if !setup.report.quiet {
+        let picture = setup.output.display();
+        let all = path(&setup.output, part, "*");
         output::print(format_args!("{file}: {}", render.part()));
         output::note(format_args!(
             "when all parts are complete, run: spherule merge {} -o {picture}",

@@ -1,9 +1,9 @@
 //! Preparation of a render: loads the scene and builds the world.
 
 use super::estimate::Estimate;
-use super::job::{Job, check_alpha};
 use super::notes::notes;
 use super::notices::Notices;
+use super::setup::{RenderSetup, check_alpha};
 use super::visibility;
 use crate::cli::contents::{dropped, found};
 use crate::cli::devices::Attached;
@@ -63,40 +63,40 @@ pub(super) struct Prepared {
     pub(super) device: Attached,
 }
 
-/// Loads the scene with the job's settings, before its camera is placed; `given` are its particles, if they are already
+/// Loads the scene with the setup's settings, before its camera is placed; `given` are its particles, if they are already
 /// loaded.
-pub(super) fn stage(job: &Job, given: Option<Particles>) -> Result<Staged, Failure> {
-    let content = match (&job.source, given) {
+pub(super) fn stage(setup: &RenderSetup, given: Option<Particles>) -> Result<Staged, Failure> {
+    let content = match (&setup.source, given) {
         (_, Some(particles)) => Content::Particles(Box::new(particles)),
         (Source::Particles(path, options), None) => {
             Content::Particles(Box::new(particles::read(path, options)?))
         }
         (source, None) => {
-            job.views.refuse_cells()?;
+            setup.views.refuse_cells()?;
             Content::Scene(Box::new(source.load()?))
         }
     };
-    let name = job.source.name();
-    let title = job.source.title(&Scene::default()).into_owned();
-    let frame = frame_number(job)?;
+    let name = setup.source.name();
+    let title = setup.source.title(&Scene::default()).into_owned();
+    let frame = frame_number(setup)?;
     let subject = Subject { path: Path::new(&*name), title: &title, frame: &frame };
-    let shared = job.common.as_ref().map(|common| &common.shared);
-    let staged = compose::stage(&job.request, &subject, content, shared);
-    let staged = staged.map_err(|fault| job.refuse(fault))?;
-    check_region(job, &staged.scene)?;
-    check_alpha(staged.scene.look.is_transparent(), job.format)?;
+    let shared = setup.common.as_ref().map(|common| &common.shared);
+    let staged = compose::stage(&setup.request, &subject, content, shared);
+    let staged = staged.map_err(|fault| setup.refuse(fault))?;
+    check_region(setup, &staged.scene)?;
+    check_alpha(staged.scene.look.is_transparent(), setup.format)?;
     Ok(staged)
 }
 
 /// Returns the number of the frame that is drawn, from 0, if a label shows it.
-pub(in crate::cli) fn frame_number(job: &Job) -> Result<Value, Failure> {
-    if !job.request.annotations.shows("frame") {
+pub(in crate::cli) fn frame_number(setup: &RenderSetup) -> Result<Value, Failure> {
+    if !setup.request.annotations.shows("frame") {
         return Ok(Value::Missing("no label shows it"));
     }
-    if let Some(number) = job.frame {
+    if let Some(number) = setup.frame {
         return Ok(Value::Whole(number as i64));
     }
-    let Source::Particles(path, options) = &job.source else {
+    let Source::Particles(path, options) = &setup.source else {
         return Ok(Value::Missing("only particle files have it"));
     };
     Ok(match options.frame {
@@ -125,59 +125,62 @@ pub(in crate::cli) struct PlacedScene {
 }
 
 impl PlacedScene {
-    /// Loads the scene, applies the job's settings, and places the camera; `given` are its particles, if they
+    /// Loads the scene, applies the setup's settings, and places the camera; `given` are its particles, if they
     /// are already loaded.
-    pub(in crate::cli) fn load(job: &Job, given: Option<Particles>) -> Result<Self, Failure> {
-        if let Source::Prepared(path) = &job.source {
-            return Self::open(job, path);
+    pub(in crate::cli) fn load(
+        setup: &RenderSetup,
+        given: Option<Particles>,
+    ) -> Result<Self, Failure> {
+        if let Source::Prepared(path) = &setup.source {
+            return Self::open(setup, path);
         }
         let start = Instant::now();
-        let mut staged = stage(job, given)?;
+        let mut staged = stage(setup, given)?;
         let load = start.elapsed();
-        let shared = job.common.as_ref().map(|common| &common.shared);
-        let angle = job.turn.map(|turn| job.views.angle(turn));
-        compose::place(&job.request, &mut staged, shared, angle)
-            .map_err(|fault| job.refuse(fault))?;
+        let shared = setup.common.as_ref().map(|common| &common.shared);
+        let angle = setup.turn.map(|turn| setup.views.angle(turn));
+        compose::place(&setup.request, &mut staged, shared, angle)
+            .map_err(|fault| setup.refuse(fault))?;
         let Staged { mut scene, legend, orientation, .. } = staged;
-        let region = job.region(&scene.settings)?;
-        if job.part.is_none() {
-            picture_file::check_size("render", region, job.format)?;
+        let region = setup.region(&scene.settings)?;
+        if setup.part.is_none() {
+            picture_file::check_size("render", region, setup.format)?;
         }
         let spheres = scene.spheres.len();
-        let denoise = choose(job, &mut scene, region, spheres)?;
-        let asked = job.checkpoints.file().is_some() || job.is_identified();
+        let denoise = choose(setup, &mut scene, region, spheres)?;
+        let asked = setup.checkpoints.file().is_some() || setup.is_identified();
         let identity = asked.then(|| Identity::of(&scene));
         Ok(Self { scene, legend, orientation, region, identity, denoise, stored: None, load })
     }
 
-    /// Opens a prepared scene, and applies the job's settings.
-    fn open(job: &Job, path: &Path) -> Result<Self, Failure> {
+    /// Opens a prepared scene, and applies the setup's settings.
+    fn open(setup: &RenderSetup, path: &Path) -> Result<Self, Failure> {
         let start = Instant::now();
         let mut stored = prepared::read(path)?;
         let mut scene = std::mem::take(&mut stored.scene);
         let load = start.elapsed();
-        check_region(job, &scene)?;
-        check_alpha(scene.look.is_transparent(), job.format)?;
-        scene.settings.change(&job.request.settings);
-        let region = job.region(&scene.settings)?;
-        if job.part.is_none() {
-            picture_file::check_size("render", region, job.format)?;
+        check_region(setup, &scene)?;
+        check_alpha(scene.look.is_transparent(), setup.format)?;
+        scene.settings.change(&setup.request.settings);
+        let region = setup.region(&scene.settings)?;
+        if setup.part.is_none() {
+            picture_file::check_size("render", region, setup.format)?;
         }
-        let denoise = choose(job, &mut scene, region, stored.sphere_count())?;
+        let denoise = choose(setup, &mut scene, region, stored.sphere_count())?;
         let identity = Some(stored.identity.clone());
         let stored = Some(Box::new(stored));
         Ok(Self { scene, legend: None, orientation: None, region, identity, denoise, stored, load })
     }
 
     /// Builds the world, unless its estimated memory exceeds the limit.
-    pub(super) fn build(self, job: &Job) -> Result<Prepared, Failure> {
+    pub(super) fn build(self, setup: &RenderSetup) -> Result<Prepared, Failure> {
         let Self { mut scene, legend, orientation, region, identity, denoise, stored, load } = self;
-        let image_part = image_part(job, region, &scene)?;
-        let estimate = Estimate::new(&scene, region, job, denoise.is_some())
+        let image_part = image_part(setup, region, &scene)?;
+        let estimate = Estimate::new(&scene, region, setup, denoise.is_some())
             .of_tiles(image_part.tiles.len())
             .check()?;
         let start = Instant::now();
-        let name = || job.source.name().into_owned();
+        let name = || setup.source.name().into_owned();
         let mut looks = None;
         let (mut world, builder) = if let Some(mut stored) = stored {
             stored.scene = scene;
@@ -190,21 +193,21 @@ impl PlacedScene {
             let part = image_part.size() as f64
                 / ImagePart::whole(region, scene.settings.spp).size() as f64;
             let samples = samples(region, &scene.settings) as f64 * part;
-            let builder = job.builder(scene.spheres.len(), samples as u64);
+            let builder = setup.builder(scene.spheres.len(), samples as u64);
             let world = World::build_taking(&mut scene, builder)
                 .map_err(|error| Failure::World(name(), error))?;
             (world, builder)
         };
         let build = start.elapsed();
-        let device = Attached::to(&mut world, &scene.settings, job.speed.device);
+        let device = Attached::to(&mut world, &scene.settings, setup.speed.device);
         let mut warnings = std::mem::take(&mut scene.warnings);
         warnings.extend(dropped(&world));
         warnings.extend(device.refusal());
         let empty = visibility::explain_empty(&world, region, scene.settings.spp);
-        let mut notes = notes(job, &scene, &world);
+        let mut notes = notes(setup, &scene, &world);
         notes.extend(compose::notes(&scene.annotations));
         Ok(Prepared {
-            title: job.source.title(&scene).into_owned(),
+            title: setup.source.title(&scene).into_owned(),
             notes,
             scene,
             world,
@@ -228,29 +231,29 @@ impl PlacedScene {
 
 impl Prepared {
     /// Prints warnings and notes before the render starts.
-    pub(super) fn report(&self, job: &Job, notices: &mut Notices) {
+    pub(super) fn report(&self, setup: &RenderSetup, notices: &mut Notices) {
         self.warnings.iter().for_each(|text| notices.warn(text));
         match &self.empty {
-            Some(_) if job.is_of_sequence() => notices.count_empty(),
+            Some(_) if setup.is_of_sequence() => notices.count_empty(),
             Some(why) => notices.warn(why),
             None => {}
         }
-        if job.common.as_ref().is_some_and(|common| !common.frames_all)
+        if setup.common.as_ref().is_some_and(|common| !common.frames_all)
             && self.world.centers_out_of_view() > 0
         {
             notices.count_cropped();
         }
-        if job.report.quiet {
+        if setup.report.quiet {
             return;
         }
         self.notes.iter().for_each(|text| notices.note(text));
         if let Some(orientation) = &self.orientation
-            && let Some(text) = job.views.explain_up(orientation)
-            && (job.report.verbose || orientation.reason.is_evident())
+            && let Some(text) = setup.views.explain_up(orientation)
+            && (setup.report.verbose || orientation.reason.is_evident())
         {
             notices.note(&text);
         }
-        if job.report.verbose {
+        if setup.report.verbose {
             for text in self.device.facts() {
                 notices.note(&text);
             }
@@ -273,8 +276,8 @@ impl Prepared {
 }
 
 /// Rejects annotations of a region of an image.
-fn check_region(job: &Job, scene: &Scene) -> Result<(), Failure> {
-    if scene.annotations.is_empty() || job.picture.region.is_none() {
+fn check_region(setup: &RenderSetup, scene: &Scene) -> Result<(), Failure> {
+    if scene.annotations.is_empty() || setup.picture.region.is_none() {
         return Ok(());
     }
     let message = "annotations inside the image need the whole image; remove --region";
@@ -282,10 +285,10 @@ fn check_region(job: &Job, scene: &Scene) -> Result<(), Failure> {
 }
 
 /// Returns the samples and tiles to render: all, or those of the part.
-fn image_part(job: &Job, region: Region, scene: &Scene) -> Result<ImagePart, Failure> {
+fn image_part(setup: &RenderSetup, region: Region, scene: &Scene) -> Result<ImagePart, Failure> {
     let settings = &scene.settings;
     let whole = ImagePart::whole(region, settings.spp);
-    let Some(part) = job.part else { return Ok(whole) };
+    let Some(part) = setup.part else { return Ok(whole) };
     let refuse = |message: &dyn std::fmt::Display| Err(Failure::usage("render", message));
     if settings.has_target() {
         return refuse(
@@ -299,18 +302,18 @@ fn image_part(job: &Job, region: Region, scene: &Scene) -> Result<ImagePart, Fai
               image; remove them with --part. The cell of a crystal is left out with --model NAME",
         );
     }
-    part.of_image(&whole, job.split).or_else(|error| refuse(&format!("--part: {error}")))
+    part.of_image(&whole, setup.split).or_else(|error| refuse(&format!("--part: {error}")))
 }
 
 /// Completes the settings, and returns how the image is denoised, if at all. `spheres` is the number of spheres, which
 /// the scene itself does not have any more if it was prepared.
 fn choose(
-    job: &Job,
+    setup: &RenderSetup,
     scene: &mut Scene,
     region: Region,
     spheres: usize,
 ) -> Result<Option<Choice>, Failure> {
-    let asked = Asked { part: job.part.is_some(), spp: job.picture.settings.spp().is_some() };
+    let asked = Asked { part: setup.part.is_some(), spp: setup.picture.settings.spp().is_some() };
     if asked.part && scene.settings.denoise == Denoise::On {
         let message = "--denoise on needs the whole image; remove it with --part";
         return Err(Failure::usage("render", message));

@@ -2,10 +2,10 @@
 
 use super::appearance::write_bar;
 use super::args::RenderArgs;
-use super::job::Job;
 use super::metadata;
 use super::notices::Notices;
 use super::prepare::{PlacedScene, Prepared};
+use super::setup::RenderSetup;
 use crate::cli::contents::spheres;
 use crate::cli::failure::Failure;
 use crate::cli::output;
@@ -16,29 +16,29 @@ use spherule_render::scene::{Identity, Settings};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Writes the scene of a job to a file.
-pub(super) fn write(job: &Job, file: &Path) -> Result<ExitCode, Failure> {
+/// Writes the scene of a setup to a file.
+pub(super) fn write(setup: &RenderSetup, file: &Path) -> Result<ExitCode, Failure> {
     check_destination(file).map_err(|error| Failure::Write(file.to_owned(), error))?;
-    let mut placed = PlacedScene::load(job, None)?;
+    let mut placed = PlacedScene::load(setup, None)?;
     let settings = &mut placed.scene.settings;
     if !settings.stop_given {
         // The program's own stop is chosen again when the file is rendered.
         (settings.until_error, settings.spp) = (None, Settings::default().spp);
     }
-    write_bar(job, placed.legend.as_ref(), placed.scene.settings.height)?;
+    write_bar(setup, placed.legend.as_ref(), placed.scene.settings.height)?;
     let identity = placed.identity.take().unwrap_or_else(|| Identity::of(&placed.scene));
-    let mut built = placed.build(job)?;
-    built.report(job, &mut Notices::default());
-    job.encoding.display.apply(&mut built.scene.settings);
+    let mut built = placed.build(setup)?;
+    built.report(setup, &mut Notices::default());
+    setup.encoding.display.apply(&mut built.scene.settings);
     built.scene.title.clone_from(&built.title);
     let Prepared { scene, world, builder, legend, .. } = &built;
-    let looks = metadata::looks(job, None, legend.as_ref(), None);
+    let looks = metadata::looks(setup, None, legend.as_ref(), None);
     let written = prepared::write(file, scene, world, &identity, &looks, *builder);
     written.map_err(|error| match error {
         PrepareError::Write(error) => Failure::Write(file.to_owned(), error),
-        other => Failure::Prepare(job.source.name().into_owned(), other),
+        other => Failure::Prepare(setup.source.name().into_owned(), other),
     })?;
-    if !job.report.quiet {
+    if !setup.report.quiet {
         let bytes = file.metadata().map_or(0, |metadata| metadata.len());
         let count = spheres(world.spheres.len() as u64);
         output::print(format_args!("{}: {count} with their tree, {}", file.display(), Size(bytes)));

@@ -1,10 +1,10 @@
 //! Summary of a render, as text and as JSON.
 
-use super::job::Job;
 use super::memory;
 use super::noise::{NoiseSummary, missed};
 use super::notices::Notices;
 use super::prepare::Prepared;
+use super::setup::RenderSetup;
 use crate::cli::contents::{BodyCounts, found, plural};
 use crate::cli::devices::DeviceSummary;
 use crate::cli::options::image::ReportArgs;
@@ -100,14 +100,14 @@ struct TaskSummary {
 
 impl<'a> Summary<'a> {
     pub(super) fn new(
-        job: &Job,
+        setup: &RenderSetup,
         prepared: &'a Prepared,
         render: &Render,
         judged: Option<&Judged>,
         options: &WriteOptions,
     ) -> Self {
         let mut listed = lists::of_settings(&prepared.scene.settings, prepared.region);
-        listed.extend(lists::of_encoding(job.format, options));
+        listed.extend(lists::of_encoding(setup.format, options));
         let mut new_warnings = warnings(&render.counters, &prepared.scene.settings);
         new_warnings.extend(missed(render, judged, &prepared.scene.settings));
         new_warnings.extend(prepared.device.fault());
@@ -116,10 +116,10 @@ impl<'a> Summary<'a> {
             program: "spherule",
             version: env!("CARGO_PKG_VERSION"),
             scene: &prepared.title,
-            output: job.output.display().to_string(),
+            output: setup.output.display().to_string(),
             complete: render.complete,
             settings: listed,
-            tracer: TracerSummary::new(job, prepared),
+            tracer: TracerSummary::new(setup, prepared),
             statistics: Statistics::new(prepared, render),
             noise: NoiseSummary::new(prepared, render, judged),
             found: found(&prepared.world),
@@ -212,17 +212,17 @@ impl TaskSummary {
 }
 
 impl TracerSummary {
-    fn new(job: &Job, prepared: &Prepared) -> Self {
+    fn new(setup: &RenderSetup, prepared: &Prepared) -> Self {
         Self {
             device: prepared.device.summary(),
-            threads: job.threads,
-            traversal: TRAVERSALS.name(&job.tracer.traversal),
+            threads: setup.threads,
+            traversal: TRAVERSALS.name(&setup.tracer.traversal),
             builder: match prepared.builder {
                 Builder::Median => "median",
                 Builder::SurfaceArea => "surface-area",
                 Builder::Morton => "morton",
             },
-            lanes: lanes(job.tracer.width),
+            lanes: lanes(setup.tracer.width),
         }
     }
 }

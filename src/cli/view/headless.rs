@@ -10,7 +10,7 @@ use super::session::Session;
 use super::times::Times;
 use crate::cli::failure::Failure;
 use crate::cli::output;
-use crate::cli::render::Job;
+use crate::cli::render::RenderSetup;
 use glam::DVec2;
 use spherule_render::atomic::write_atomically;
 use spherule_render::image::{Compression, encode_codes};
@@ -22,26 +22,26 @@ use std::time::Instant;
 /// A viewer that loads and renders in the calling thread.
 pub(super) struct Headless {
     session: Session,
-    job: Arc<Job<'static>>,
+    setup: Arc<RenderSetup<'static>>,
     loader: Loader,
     times: Times,
 }
 
 impl Headless {
-    /// Loads the scene of the job.
-    pub(super) fn new(job: Job<'static>) -> Result<Self, Failure> {
-        let job = Arc::new(job);
-        let (session, loader) = (Session::new(FrameRate::Whole), Loader::new(Arc::clone(&job)));
-        let mut own = Self { session, job, loader, times: Times::default() };
+    /// Loads the scene of the setup.
+    pub(super) fn new(setup: RenderSetup<'static>) -> Result<Self, Failure> {
+        let setup = Arc::new(setup);
+        let (session, loader) = (Session::new(FrameRate::Whole), Loader::new(Arc::clone(&setup)));
+        let mut own = Self { session, setup, loader, times: Times::default() };
         let stage = own.load()?;
-        own.session.begin(stage, &own.job);
+        own.session.begin(stage, &own.setup);
         Ok(own)
     }
 
     /// Loads the viewer's content.
     fn load(&mut self) -> Result<LoadedScene, Failure> {
         let progress = Arc::new(Progress::default());
-        let _watch = ProgressReporter::start(&progress, self.job.report.quiet, |_| ());
+        let _watch = ProgressReporter::start(&progress, self.setup.report.quiet, |_| ());
         self.loader.load(&self.session.viewer.content, &progress)
     }
 
@@ -106,7 +106,7 @@ impl Headless {
             None => (),
             Some(Action::Quit) => return Ok(false),
             Some(Action::Save) => {
-                let path = self.job.output.clone();
+                let path = self.setup.output.clone();
                 self.wait(1)?;
                 self.save(&path)?;
                 self.save(&path.with_extension("toml"))?;
@@ -114,7 +114,7 @@ impl Headless {
             Some(Action::Load) => {
                 self.session.drop_world();
                 let stage = self.load()?;
-                self.session.set(stage, &self.job);
+                self.session.set(stage, &self.setup);
             }
             Some(Action::Frame(side)) => self.session.frame(side),
             Some(Action::Pick(pixel, purpose)) => {
@@ -198,7 +198,7 @@ impl Headless {
             return save_scene(&seen, &renderer.stage.scene, renderer.stage.origin.as_ref(), path);
         }
         save_picture(&seen, path)?;
-        save_bar(&self.job, &viewer.facts, settings.height)
+        save_bar(&self.setup, &viewer.facts, settings.height)
     }
 
     /// Writes the contents of the window.

@@ -7,7 +7,7 @@ use super::loading::{Progress, Step};
 use super::viewer::Facts;
 use crate::cli::devices::Attached;
 use crate::cli::failure::Failure;
-use crate::cli::render::{Job, check_legend, frame_number};
+use crate::cli::render::{RenderSetup, check_legend, frame_number};
 use crate::cli::source::Source;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -74,16 +74,16 @@ pub(super) struct LoadedScene {
 /// Data needed to read a stage's spheres again.
 #[derive(Clone)]
 pub(super) struct Origin {
-    job: Arc<Job<'static>>,
+    setup: Arc<RenderSetup<'static>>,
     content: Content,
     /// Modification time and length of the file when it was read.
     stamp: Option<(SystemTime, u64)>,
 }
 
 impl Base {
-    /// Reads the job's source. `before` was read last, and is returned if it is sufficient.
+    /// Reads the setup's source. `before` was read last, and is returned if it is sufficient.
     pub(super) fn load(
-        job: &Job,
+        setup: &RenderSetup,
         content: &Content,
         before: Option<Self>,
         progress: &Progress,
@@ -97,10 +97,10 @@ impl Base {
         if let Some(base) = before.filter(enough) {
             return Ok(base);
         }
-        progress.begin(Step::reading(&job.source.name()));
-        let Source::Particles(path, options) = &job.source else {
-            job.views.refuse_cells()?;
-            return Ok(Self::of_scene(job.source.load()?));
+        progress.begin(Step::reading(&setup.source.name()));
+        let Source::Particles(path, options) = &setup.source else {
+            setup.views.refuse_cells()?;
+            return Ok(Self::of_scene(setup.source.load()?));
         };
         let mut options = ReadOptions::clone(options);
         if let Some(frame) = content.frame {
@@ -112,10 +112,10 @@ impl Base {
         let mut particles = particles::read(path, &options)?;
         let more_columns = path.is_file() && has_many_values(&particles);
         // All else is applied to the particles of each picture.
-        let (select, model) = (job.request.style.select.clone(), Some(Model::SpaceFilling));
+        let (select, model) = (setup.request.style.select.clone(), Some(Model::SpaceFilling));
         let select = ParticleStyle { select, model, ..ParticleStyle::default() };
         select.apply(path, &mut particles)?;
-        compose::repeat(job.request.cell, path, &mut particles)?;
+        compose::repeat(setup.request.cell, path, &mut particles)?;
         options.progress = ReadProgress::default();
         let frames = frames.or_else(|| count(path, &options, content.frame.is_some()));
         Ok(Self { particles, scene: None, frame: content.frame, frames, more_columns })
@@ -137,7 +137,7 @@ impl Base {
     }
 
     /// Returns the facts for the viewer, without those that depend on colors and materials.
-    fn facts(&self, job: &Job) -> Facts {
+    fn facts(&self, setup: &RenderSetup) -> Facts {
         let own = other_columns(&self.particles);
         let own = own.filter(|name| self.more_columns || self.particles.can_color_by(name));
         let has_types = !self.particles.kinds.codes.is_empty();
@@ -147,7 +147,7 @@ impl Base {
             frame: self.frame.unwrap_or(0),
             frames: self.frames,
             own_materials: self.scene.is_none()
-                && (job.request.style.types.iter().any(|look| look.material.is_some())
+                && (setup.request.style.types.iter().any(|look| look.material.is_some())
                     || self.particles.material_names.iter().any(|name| !name.is_empty())),
             ..Facts::default()
         }
@@ -157,28 +157,28 @@ impl Base {
 /// Composes the scene of the content: that of the command line, without what is hidden, and with the colors and the
 /// preset that are chosen since.
 fn stage(
-    job: &Job,
+    setup: &RenderSetup,
     content: &Content,
     arrow_sizes: Option<ArrowSizes>,
     mut particles: Particles,
     scene: Option<Scene>,
 ) -> Result<(Request, Staged), Failure> {
     let mut request = Request {
-        style: restyled(job, content, arrow_sizes, &mut particles),
+        style: restyled(setup, content, arrow_sizes, &mut particles),
         // They are wrapped and replicated as they are read.
-        cell: CellRequest { show: job.request.cell.show, ..CellRequest::default() },
+        cell: CellRequest { show: setup.request.cell.show, ..CellRequest::default() },
         keeps_labels: true,
-        ..job.request.clone()
+        ..setup.request.clone()
     };
     if let Some((preset, camera)) = &content.preset {
         request.preset = Some(*preset);
         request.lit_from = Some(camera.clone());
     }
-    let name = job.source.name();
-    let title = job.source.title(&Scene::default()).into_owned();
-    let frame = content.frame.or(job.frame);
+    let name = setup.source.name();
+    let title = setup.source.title(&Scene::default()).into_owned();
+    let frame = content.frame.or(setup.frame);
     let frame =
-        frame.map_or_else(|| frame_number(job), |number| Ok(Value::Whole(number as i64)))?;
+        frame.map_or_else(|| frame_number(setup), |number| Ok(Value::Whole(number as i64)))?;
     let subject = Subject { path: Path::new(&*name), title: &title, frame: &frame };
     let staged = if let Some(scene) = scene {
         let legend = request.style.apply(subject.path, &mut particles)?;
@@ -193,12 +193,12 @@ fn stage(
     } else {
         compose::stage(&request, &subject, compose::Content::Particles(Box::new(particles)), None)
     };
-    Ok((request, staged.map_err(|fault| job.refuse(fault))?))
+    Ok((request, staged.map_err(|fault| setup.refuse(fault))?))
 }
 
 /// Loads one stage after another, and keeps what was read last unless it is large.
 pub(super) struct Loader {
-    job: Arc<Job<'static>>,
+    setup: Arc<RenderSetup<'static>>,
     base: Option<Base>,
     /// Sizes of the arrows of the first frame that had some: those of others compare with them.
     arrow_sizes: Option<ArrowSizes>,
@@ -207,8 +207,8 @@ pub(super) struct Loader {
 }
 
 impl Loader {
-    pub(super) fn new(job: Arc<Job<'static>>) -> Self {
-        Self { job, base: None, arrow_sizes: None, began: false }
+    pub(super) fn new(setup: Arc<RenderSetup<'static>>) -> Self {
+        Self { setup, base: None, arrow_sizes: None, began: false }
     }
 
     /// Reads the source if necessary, applies colors and materials, and builds the world.
@@ -217,14 +217,14 @@ impl Loader {
         content: &Content,
         progress: &Progress,
     ) -> Result<LoadedScene, Failure> {
-        let job = &self.job;
+        let setup = &self.setup;
         let first = !std::mem::replace(&mut self.began, true);
-        if !first && self.base.is_none() && is_standard_input(&job.source) {
+        if !first && self.base.is_none() && is_standard_input(&setup.source) {
             return Err(Failure::Window(READ_ONCE.to_owned()));
         }
-        let stamp = stamp(&job.source);
-        let read = Base::load(job, content, self.base.take(), progress)?;
-        let facts = read.facts(job);
+        let stamp = stamp(&setup.source);
+        let read = Base::load(setup, content, self.base.take(), progress)?;
+        let facts = read.facts(setup);
         let many = read.particles.spheres.len() > MANY;
         let (particles, scene) = if many {
             (read.particles, read.scene)
@@ -233,23 +233,23 @@ impl Loader {
             self.base = Some(read);
             parts
         };
-        let (request, mut staged) = stage(job, content, self.arrow_sizes, particles, scene)?;
+        let (request, mut staged) = stage(setup, content, self.arrow_sizes, particles, scene)?;
         self.arrow_sizes = self.arrow_sizes.or(staged.arrow_sizes);
         if first {
-            check_legend(job, staged.legend.as_ref())?;
+            check_legend(setup, staged.legend.as_ref())?;
         }
-        compose::place(&request, &mut staged, None, None).map_err(|fault| job.refuse(fault))?;
+        compose::place(&request, &mut staged, None, None).map_err(|fault| setup.refuse(fault))?;
         let Staged { mut scene, labels, legend, orientation, .. } = staged;
-        let failed = |error| Failure::World(job.source.name().into_owned(), error);
+        let failed = |error| Failure::World(setup.source.name().into_owned(), error);
         framing::include_points(&mut scene, &[]).map_err(failed)?;
         let count = scene.spheres.len();
         let facts = Facts {
-            title: job.source.title(&scene).into_owned(),
+            title: setup.source.title(&scene).into_owned(),
             spheres: count,
             types: labels.kinds.table.iter().map(|kind| kind.name.clone()).collect(),
             size: size(&scene),
             look: scene.look,
-            preset: job.preset(),
+            preset: setup.preset(),
             orientation,
             color_bar: scene.annotations.color_bar.is_some(),
             legend,
@@ -257,7 +257,7 @@ impl Loader {
         };
         progress.begin(Step::Building(count));
         let samples = u64::from(scene.settings.width) * u64::from(scene.settings.height) * 64;
-        let builder = job.builder(count, samples);
+        let builder = setup.builder(count, samples);
         let mut world = if many {
             let sketch = sketch(&scene.spheres);
             let world = World::build_taking(&mut scene, builder).map_err(failed)?;
@@ -266,10 +266,10 @@ impl Loader {
         } else {
             World::build_with(&scene, builder).map_err(failed)?
         };
-        let origin = || Origin { job: Arc::clone(job), content: content.clone(), stamp };
+        let origin = || Origin { setup: Arc::clone(setup), content: content.clone(), stamp };
         let origin = many.then(origin);
         let mut warnings = std::mem::take(&mut scene.warnings);
-        let device = Attached::to(&mut world, &scene.settings, job.speed.device);
+        let device = Attached::to(&mut world, &scene.settings, setup.speed.device);
         warnings.extend(device.refusal());
         let scene = Arc::new(RwLock::new(scene));
         Ok(LoadedScene {
@@ -289,7 +289,7 @@ impl Loader {
 impl Origin {
     /// Returns whether the spheres can be read again, as far as is known in advance.
     pub(super) fn is_readable(&self) -> bool {
-        !is_standard_input(&self.job.source) && self.stamp == stamp(&self.job.source)
+        !is_standard_input(&self.setup.source) && self.stamp == stamp(&self.setup.source)
     }
 
     /// Reads the spheres of the stage again.
@@ -297,16 +297,16 @@ impl Origin {
     /// # Errors
     /// The file cannot be read twice, has changed, or cannot be read any more.
     pub(super) fn spheres(&self) -> Result<Spheres, Failure> {
-        let name = self.job.source.name();
+        let name = self.setup.source.name();
         let failed = |why: &str| Err(Failure::Window(format!("{name}: {why}")));
-        if is_standard_input(&self.job.source) {
+        if is_standard_input(&self.setup.source) {
             return Err(Failure::Window(READ_ONCE.to_owned()));
         }
-        if self.stamp != stamp(&self.job.source) {
+        if self.stamp != stamp(&self.setup.source) {
             return failed("the file has changed since it was read; open it again");
         }
-        let base = Base::load(&self.job, &self.content, None, &Progress::default())?;
-        let (_, staged) = stage(&self.job, &self.content, None, base.particles, base.scene)?;
+        let base = Base::load(&self.setup, &self.content, None, &Progress::default())?;
+        let (_, staged) = stage(&self.setup, &self.content, None, base.particles, base.scene)?;
         Ok(staged.scene.spheres)
     }
 }
@@ -356,7 +356,7 @@ pub(super) fn columns(labels: &Labels, row: usize) -> impl Iterator<Item = Strin
 
 /// Returns the style of the command line, without hidden particles, and with the colors that are chosen.
 fn restyled(
-    job: &Job,
+    setup: &RenderSetup,
     content: &Content,
     arrow_sizes: Option<ArrowSizes>,
     particles: &mut Particles,
@@ -371,8 +371,8 @@ fn restyled(
         .color
         .clone()
         .map(|column| Coloring::Column(ColumnColors { column, ..ColumnColors::default() }));
-    let coloring = coloring.unwrap_or_else(|| job.request.style.coloring.clone());
-    let style = job.request.style.clone();
+    let coloring = coloring.unwrap_or_else(|| setup.request.style.coloring.clone());
+    let style = setup.request.style.clone();
     let mut style = ParticleStyle { select, coloring, allow_empty: false, ..style };
     if let (Some(arrows), Some(sizes)) = (&mut style.arrows, arrow_sizes) {
         arrows.fix(sizes);
@@ -468,17 +468,17 @@ mod tests {
             .chain(words);
         let args = Args::try_parse_from(words).expect("options");
         let Some(Command::Render(args)) = args.command else { panic!("a render") };
-        let job = Arc::new(Job::new(Box::leak(args)).expect("a job"));
+        let setup = Arc::new(RenderSetup::new(Box::leak(args)).expect("a setup"));
         let described = |scene: &Scene| {
             (text_without_columns(scene).expect("no picture"), scene.spheres.clone())
         };
-        let rendered = PlacedScene::load(&job, None).and_then(|placed| {
+        let rendered = PlacedScene::load(&setup, None).and_then(|placed| {
             let mut scene = placed.scene;
             let failed = |error| Failure::World(String::new(), error);
             framing::include_points(&mut scene, &[]).map_err(failed)?;
             Ok(described(&scene))
         });
-        let mut loader = Loader::new(Arc::clone(&job));
+        let mut loader = Loader::new(Arc::clone(&setup));
         let seen = loader.load(&Content::default(), &Progress::default());
         let seen = seen.map(|loaded| described(&loaded.scene.read().expect("no panic")));
         [rendered, seen].map(|scene| scene.map_err(|error| error.to_string()))

@@ -49,7 +49,7 @@ use self::script::Step;
 use super::failure::Failure;
 use super::files::{Files, STREAM};
 use super::options::appearance::BarPlace;
-use super::render::{Job, check_bar};
+use super::render::{RenderSetup, check_bar};
 use super::source::is_scene;
 use clap::Arg;
 use std::fmt::Write;
@@ -101,26 +101,28 @@ pub(super) fn run(args: Box<ViewerArgs>) -> Result<ExitCode, Failure> {
     // the process.
     let args: &'static ViewerArgs = Box::leak(args);
     args.render.memory.apply();
-    let job = Job::new(&args.render)?;
-    refuse(args, &job)?;
-    check_bar(&job)?;
+    let setup = RenderSetup::new(&args.render)?;
+    refuse(args, &setup)?;
+    check_bar(&setup)?;
     if let Some(path) = &args.headless_script {
         let steps = read_script(path)?;
         script_files(args, path, &steps).check()?;
         let json = args.render.report.json;
-        let pool = job.pool()?;
-        return pool.install(|| Headless::new(job)?.run(&steps, json)).map(|()| ExitCode::SUCCESS);
+        let pool = setup.pool()?;
+        return pool
+            .install(|| Headless::new(setup)?.run(&steps, json))
+            .map(|()| ExitCode::SUCCESS);
     }
-    open(job, args)
+    open(setup, args)
 }
 
 #[cfg(feature = "view")]
-fn open(job: Job<'static>, args: &ViewerArgs) -> Result<ExitCode, Failure> {
-    window::run(job, args.render.report.json).map(|()| ExitCode::SUCCESS)
+fn open(setup: RenderSetup<'static>, args: &ViewerArgs) -> Result<ExitCode, Failure> {
+    window::run(setup, args.render.report.json).map(|()| ExitCode::SUCCESS)
 }
 
 #[cfg(not(feature = "view"))]
-fn open(_: Job<'static>, _: &ViewerArgs) -> Result<ExitCode, Failure> {
+fn open(_: RenderSetup<'static>, _: &ViewerArgs) -> Result<ExitCode, Failure> {
     let message = "this program was built without windows; install it with `cargo install --path . \
                    --features view`, or use --headless-script FILE";
     Err(Failure::Window(message.to_owned()))
@@ -165,14 +167,14 @@ fn read_script(path: &Path) -> Result<Vec<(usize, Step)>, Failure> {
 }
 
 /// Rejects options that apply only to rendered files.
-fn refuse(args: &ViewerArgs, job: &Job) -> Result<(), Failure> {
+fn refuse(args: &ViewerArgs, setup: &RenderSetup) -> Result<(), Failure> {
     let has = [
         ("--output -", args.render.output == Path::new(STREAM)),
         ("--output-format", args.render.encoding.output_format.is_some()),
         ("--region", args.render.picture.region.is_some()),
         ("--layers", !args.render.encoding.layers.is_empty()),
-        ("--part", job.part.is_some()),
-        ("--turntable", job.views.turntable().is_some()),
+        ("--part", setup.part.is_some()),
+        ("--turntable", setup.views.turntable().is_some()),
         ("--checkpoint", args.render.checkpoints.checkpoint.is_some()),
         ("--resume", args.render.checkpoints.resume.is_some()),
         ("--terminal", args.render.report.terminal),

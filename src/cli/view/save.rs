@@ -4,7 +4,9 @@ use super::image::Picture;
 use super::load::Origin;
 use super::viewer::Facts;
 use crate::cli::failure::Failure;
-use crate::cli::render::{Job, Subject, alpha, check_alpha, push_denoised, push_error, write_bar};
+use crate::cli::render::{
+    RenderSetup, Subject, alpha, check_alpha, push_denoised, push_error, write_bar,
+};
 use spherule_render::film::Region;
 use spherule_render::image::{Channel, Format, WriteOptions};
 use spherule_render::scene::{Camera, Header, Look, Scene, Settings, write_as};
@@ -42,9 +44,9 @@ pub(super) fn save_picture(seen: &SavedImage, path: &Path) -> Result<(), Failure
 }
 
 /// Writes the color bar, if it has its own file and colors represent numbers.
-pub(super) fn save_bar(job: &Job, facts: &Facts, height: u32) -> Result<(), Failure> {
+pub(super) fn save_bar(setup: &RenderSetup, facts: &Facts, height: u32) -> Result<(), Failure> {
     match &facts.legend {
-        Some(legend) => write_bar(job, Some(legend), height),
+        Some(legend) => write_bar(setup, Some(legend), height),
         None => Ok(()),
     }
 }

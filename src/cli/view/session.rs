@@ -8,7 +8,7 @@ use super::renderer::{Picked, Renderer};
 use super::viewer::Viewer;
 use crate::cli::options::views::from_side;
 use crate::cli::output;
-use crate::cli::render::Job;
+use crate::cli::render::RenderSetup;
 use spherule_render::compose::corners;
 use spherule_render::scene::{Camera, Pose, Projection, Scene, Settings};
 use spherule_render::world::framing;
@@ -34,11 +34,11 @@ impl Session {
     }
 
     /// Shows the first scene.
-    pub(super) fn begin(&mut self, stage: LoadedScene, job: &Job) {
-        let samples = job.picture.settings.spp().unwrap_or(SAMPLES);
+    pub(super) fn begin(&mut self, stage: LoadedScene, setup: &RenderSetup) {
+        let samples = setup.picture.settings.spp().unwrap_or(SAMPLES);
         begin(&mut self.viewer, &stage, samples);
         stage.warnings.iter().for_each(output::warn);
-        self.renderer = Some(Renderer::new(stage, job.tracer, builder(job, &self.viewer)));
+        self.renderer = Some(Renderer::new(stage, setup.tracer, builder(setup, &self.viewer)));
     }
 
     /// Drops a large world that can be read again, to free memory for the next one.
@@ -50,12 +50,13 @@ impl Session {
     }
 
     /// Shows another scene with the current camera.
-    pub(super) fn set(&mut self, stage: LoadedScene, job: &Job) {
+    pub(super) fn set(&mut self, stage: LoadedScene, setup: &RenderSetup) {
         self.viewer.loaded(stage.facts.clone());
         match &mut self.renderer {
             Some(renderer) => renderer.set(stage),
             None => {
-                self.renderer = Some(Renderer::new(stage, job.tracer, builder(job, &self.viewer)));
+                self.renderer =
+                    Some(Renderer::new(stage, setup.tracer, builder(setup, &self.viewer)));
             }
         }
     }
@@ -74,10 +75,13 @@ impl Session {
 }
 
 /// Returns the BVH builder for the viewer.
-pub(super) fn builder(job: &Job, viewer: &Viewer) -> spherule_render::bvh::builders::Builder {
+pub(super) fn builder(
+    setup: &RenderSetup,
+    viewer: &Viewer,
+) -> spherule_render::bvh::builders::Builder {
     let Settings { width, height, spp, .. } = viewer.settings;
     let samples = u64::from(width) * u64::from(height) * u64::from(spp);
-    job.builder(viewer.facts.spheres, samples)
+    setup.builder(viewer.facts.spheres, samples)
 }
 
 /// Shows the first scene in a viewer, with `samples` per pixel.

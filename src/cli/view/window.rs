@@ -19,7 +19,7 @@ use super::times::Times;
 use super::viewer::Viewer;
 use super::worker::{Message, Workers};
 use crate::cli::failure::Failure;
-use crate::cli::render::Job;
+use crate::cli::render::RenderSetup;
 use softbuffer::{Context, Surface};
 use spherule_render::scene::{Scene, Settings};
 use std::num::NonZeroU32;
@@ -54,7 +54,7 @@ struct App {
     loaded: Content,
     /// Content to return to if loading fails, if its world was dropped to free memory.
     fallback: Option<Content>,
-    job: Arc<Job<'static>>,
+    setup: Arc<RenderSetup<'static>>,
     savers: Vec<JoinHandle<()>>,
     /// Files that are being written.
     files: u32,
@@ -83,16 +83,16 @@ struct Clock {
     shown: (u64, (u32, u32), u32),
 }
 
-/// Opens a window for the job's scene, and runs until it is closed.
-pub(super) fn run(job: Job<'static>, json: bool) -> Result<(), Failure> {
+/// Opens a window for the setup's scene, and runs until it is closed.
+pub(super) fn run(setup: RenderSetup<'static>, json: bool) -> Result<(), Failure> {
     let events = event_loop()?;
     let proxy = events.create_proxy();
-    let (output, sized) = (job.output.clone(), job.picture.settings.size());
-    let samples = job.picture.settings.spp().unwrap_or(session::SAMPLES);
+    let (output, sized) = (setup.output.clone(), setup.picture.settings.size());
+    let samples = setup.picture.settings.spp().unwrap_or(session::SAMPLES);
     let sender = proxy.clone();
-    let name = job.source.name().into_owned();
-    let job = Arc::new(job);
-    let workers = Workers::start(&job, move |message| sender.send_event(message).is_ok())?;
+    let name = setup.source.name().into_owned();
+    let setup = Arc::new(setup);
+    let workers = Workers::start(&setup, move |message| sender.send_event(message).is_ok())?;
     let mut settings = Settings { width: 1280, height: 720, ..Settings::default() };
     if let Some(size) = sized {
         [settings.width, settings.height] = size;
@@ -108,7 +108,7 @@ pub(super) fn run(job: Job<'static>, json: bool) -> Result<(), Failure> {
         origin: None,
         loaded: Content::default(),
         fallback: None,
-        job,
+        setup,
         savers: Vec::new(),
         files: 0,
         closed: false,

@@ -10,7 +10,7 @@ use super::load::{LoadedScene, Loader};
 use super::loading::{Loading, Progress, ProgressReporter};
 use super::renderer::{Picked, Renderer};
 use crate::cli::failure::Failure;
-use crate::cli::render::Job;
+use crate::cli::render::RenderSetup;
 use rayon::ThreadPool;
 use spherule_render::scene::{Camera, Settings};
 use std::path::PathBuf;
@@ -63,17 +63,17 @@ impl Workers {
     /// # Errors
     /// The pools of threads cannot be started.
     pub(super) fn start(
-        job: &Arc<Job<'static>>,
+        setup: &Arc<RenderSetup<'static>>,
         notify: impl Fn(Message) -> bool + Clone + Send + 'static,
     ) -> Result<Self, Failure> {
         let (requests, wanted) = channel();
         let (tasks, todo) = channel();
         // A render waits for all threads of its pool, so it has a pool of its own.
-        let (loaders, renderers) = (job.pool()?, job.pool()?);
-        let (tracer, builder) = (job.tracer, job.builder(usize::MAX, u64::MAX));
+        let (loaders, renderers) = (setup.pool()?, setup.pool()?);
+        let (tracer, builder) = (setup.tracer, setup.builder(usize::MAX, u64::MAX));
         let loaded = notify.clone();
-        let loader = Loader::new(Arc::clone(job));
-        let quiet = job.report.quiet;
+        let loader = Loader::new(Arc::clone(setup));
+        let quiet = setup.report.quiet;
         thread::spawn(move || load(&loaders, loader, &wanted, loaded, quiet));
         thread::spawn(move || {
             let renderer = |stage| Renderer::new(stage, tracer, builder);

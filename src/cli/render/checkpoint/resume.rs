@@ -4,8 +4,8 @@ use super::invocation::{CommandOptions, Invocation};
 use crate::cli::failure::Failure;
 use crate::cli::options::lists::region_text;
 use crate::cli::render::args::RenderArgs;
-use crate::cli::render::job::Job;
 use crate::cli::render::prepare::Prepared;
+use crate::cli::render::setup::RenderSetup;
 use clap::{ArgMatches, Command, FromArgMatches};
 use spherule_render::checkpoint::{self, Origin};
 use spherule_render::render::ResumableRender;
@@ -48,20 +48,20 @@ impl Resumed {
     /// Returns the render, if it can resume with these arguments.
     pub(in crate::cli) fn into_render(
         mut self,
-        job: &Job,
+        setup: &RenderSetup,
         prepared: &Prepared,
     ) -> Result<ResumableRender, Failure> {
-        match self.difference(job, prepared) {
+        match self.difference(setup, prepared) {
             None => Ok(self.render),
             Some(why) => Err(Failure::Resume(self.path, why)),
         }
     }
 
     /// Returns the reason why the arguments do not match the render.
-    fn difference(&mut self, job: &Job, prepared: &Prepared) -> Option<String> {
+    fn difference(&mut self, setup: &RenderSetup, prepared: &Prepared) -> Option<String> {
         let (then, now) = (self.render.settings(), &prepared.scene.settings);
         let targets = |of: &Settings| (of.spp, of.until_error, of.time);
-        if job.is_of_sequence() && targets(then) != targets(now) {
+        if setup.is_of_sequence() && targets(then) != targets(now) {
             let why = "the images of the sequence would differ; use the same --spp, --until-error and --time \
                        as before";
             return Some(why.to_owned());
@@ -83,7 +83,7 @@ impl Resumed {
                  before, or delete the file"
             ));
         }
-        if job.encoding.needs_statistics() && !self.render.statistics() {
+        if setup.encoding.needs_statistics() && !self.render.statistics() {
             let why = "--layers variance and samples need statistics from the start of the render; remove \
                        them";
             return Some(why.to_owned());
@@ -91,7 +91,7 @@ impl Resumed {
         let part = prepared.identity.as_ref()?.difference(&self.origin.scene)?;
         Some(format!(
             "the {part} of {} changed since the render started; restore the scene, or start a new render",
-            job.source.name()
+            setup.source.name()
         ))
     }
 }

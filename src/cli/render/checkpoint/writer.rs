@@ -4,8 +4,8 @@ use super::invocation::Invocation;
 use crate::cli::failure::Failure;
 use crate::cli::options::checkpoints::CheckpointArgs;
 use crate::cli::output;
-use crate::cli::render::job::Job;
 use crate::cli::render::prepare::Prepared;
+use crate::cli::render::setup::RenderSetup;
 use spherule_render::atomic::{check_destination, remove_leftovers};
 use spherule_render::checkpoint::{self, Caption, Lock, Origin};
 use spherule_render::render::ResumableRender;
@@ -75,15 +75,15 @@ impl CheckpointWriter {
     /// written.
     pub(in crate::cli) fn save(
         &self,
-        job: &Job,
+        setup: &RenderSetup,
         prepared: &Prepared,
         caption: &Caption,
         render: &ResumableRender,
     ) -> bool {
         let start = Instant::now();
-        let written = self.write(job, prepared, caption, render);
+        let written = self.write(setup, prepared, caption, render);
         self.report(written.as_ref().err());
-        self.reschedule(job.checkpoints, written.is_ok().then(|| start.elapsed()));
+        self.reschedule(setup.checkpoints, written.is_ok().then(|| start.elapsed()));
         written.is_ok()
     }
 
@@ -104,14 +104,14 @@ impl CheckpointWriter {
     /// Writes a checkpoint.
     pub(in crate::cli) fn write(
         &self,
-        job: &Job,
+        setup: &RenderSetup,
         prepared: &Prepared,
         caption: &Caption,
         render: &ResumableRender,
     ) -> io::Result<()> {
         let Invocation { command, folder, typed } = &self.invocation;
         let mut typed = typed.clone();
-        if let Some(place) = job.place {
+        if let Some(place) = setup.place {
             typed.set("first_picture", place.index.to_string());
         }
         let arguments = typed.arguments(command);

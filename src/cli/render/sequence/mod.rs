@@ -15,8 +15,8 @@ use self::survey::Survey;
 use super::checkpoint::resume::Resumed;
 use super::checkpoint::writer::CheckpointWriter;
 use super::image::{Session, render_placed};
-use super::job::{Common, Job, Place};
 use super::prepare::PlacedScene;
+use super::setup::{Common, Place, RenderSetup};
 use super::video::Video;
 use crate::cli::contents::plural;
 use crate::cli::failure::Failure;
@@ -34,52 +34,51 @@ use std::process::ExitCode;
 ///
 /// `files` are all files of the command except the images.
 pub(super) fn run(
-    job: &Job,
+    setup: &RenderSetup,
     files: &Files,
     writer: Option<&CheckpointWriter>,
     resumed: Option<Resumed>,
 ) -> Result<ExitCode, Failure> {
     let resumed = match resumed {
-        Some(resumed) if job.sequence.first_picture.is_none() => {
+        Some(resumed) if setup.sequence.first_picture.is_none() => {
             let why = "it holds a single image; remove --turntable, and give --frame one frame";
             return Err(resumed.refuse(why));
         }
         resumed => resumed,
     };
     let session = Session { writer, ..Session::default() };
-    let (particles, _) = job.typed;
-    let Some(range) = particles.frames() else {
-        return run_turntable(job, files, session, resumed);
+    let Some(range) = setup.particles.frames() else {
+        return run_turntable(setup, files, session, resumed);
     };
-    let Source::Particles(path, options) = &job.source else {
+    let Source::Particles(path, options) = &setup.source else {
         let message = "--frame needs a particle file";
         return Err(Failure::usage("render", message));
     };
     let mut options = ReadOptions { allow_empty: true, ..ReadOptions::clone(options) };
     let frames = Frames::choose(path, &options, range)?;
-    let plan = Plan::new(Some(frames), job.views.turntable())?;
-    let mut job = job.clone();
-    job.request.style.allow_empty = true;
-    let video = check_outputs(&job, &plan, files)?;
+    let plan = Plan::new(Some(frames), setup.views.turntable())?;
+    let mut setup = setup.clone();
+    setup.request.style.allow_empty = true;
+    let video = check_outputs(&setup, &plan, files)?;
     let mut reader = FrameReader::open(path, &options)?;
-    let survey = survey_frames(&job, &plan, path, &options, &mut reader)?;
-    survey.check(path, &job.request.style)?;
-    print_framing(&job, &plan);
+    let survey = survey_frames(&setup, &plan, path, &options, &mut reader)?;
+    survey.check(path, &setup.request.style)?;
+    print_framing(&setup, &plan);
     survey.fix_radius(&mut options);
-    survey.fix_colors(&mut job.request.style.coloring);
-    survey.fix_arrows(job.request.style.arrows.as_mut());
+    survey.fix_colors(&mut setup.request.style.coloring);
+    survey.fix_arrows(setup.request.style.arrows.as_mut());
     let session = Session { video, ..session };
-    Sequence { job, plan, files, session, resumed }.of_frames(path, &options, reader, survey)
+    Sequence { setup, plan, files, session, resumed }.of_frames(path, &options, reader, survey)
 }
 
 /// Renders the images of a turntable around one scene.
 fn run_turntable(
-    job: &Job,
+    setup: &RenderSetup,
     files: &Files,
     session: Session,
     resumed: Option<Resumed>,
 ) -> Result<ExitCode, Failure> {
-    if let Source::Particles(path, _) = &job.source
+    if let Source::Particles(path, _) = &setup.source
         && plan::is_stream(path)
     {
         let message = format!(
@@ -88,23 +87,27 @@ fn run_turntable(
         );
         return Err(Failure::usage("render", message));
     }
-    let plan = Plan::new(None, job.views.turntable())?;
-    let video = check_outputs(job, &plan, files)?;
+    let plan = Plan::new(None, setup.views.turntable())?;
+    let video = check_outputs(setup, &plan, files)?;
     let session = Session { video, ..session };
-    Sequence { job: job.clone(), plan, files, session, resumed }.of_turn()
+    Sequence { setup: setup.clone(), plan, files, session, resumed }.of_turn()
 }
 
 /// Checks that all images of this process can be written without replacing other files of the command, as far
 /// as their number is known; returns the video, if there is one.
-fn check_outputs(job: &Job, plan: &Plan, files: &Files) -> Result<Option<Video>, Failure> {
-    if let Some(container) = job.video {
-        files.check_output("--output", &job.output)?;
-        return Video::new(&job.output, container, job.sequence.fps).map(Some);
+fn check_outputs(
+    setup: &RenderSetup,
+    plan: &Plan,
+    files: &Files,
+) -> Result<Option<Video>, Failure> {
+    if let Some(container) = setup.video {
+        files.check_output("--output", &setup.output)?;
+        return Video::new(&setup.output, container, setup.sequence.fps).map(Some);
     }
-    let known = (0..plan.count().unwrap_or(1)).filter(|&index| is_assigned(job, index));
+    let known = (0..plan.count().unwrap_or(1)).filter(|&index| is_assigned(setup, index));
     let mut files = files.clone();
     for shot in known.filter_map(|index| plan.shot(index)) {
-        let output = numbered(&job.output, shot.number, plan.digits());
+        let output = numbered(&setup.output, shot.number, plan.digits());
         files.writes("--output", &output);
         picture_file::check(&output)?;
     }
@@ -113,14 +116,14 @@ fn check_outputs(job: &Job, plan: &Plan, files: &Files) -> Result<Option<Video>,
 }
 
 /// Returns whether this process renders an image. Parts of a sequence take the images in turn.
-fn is_assigned(job: &Job, index: u64) -> bool {
+fn is_assigned(setup: &RenderSetup, index: u64) -> bool {
     let own = |part: Part| index % u64::from(part.count()) == u64::from(part.number() - 1);
-    job.deal.is_none_or(own)
+    setup.deal.is_none_or(own)
 }
 
 /// Surveys all frames of the sequence, or only the first one if the input can be read only once.
 fn survey_frames(
-    job: &Job,
+    setup: &RenderSetup,
     plan: &Plan,
     path: &Path,
     options: &ReadOptions,
@@ -129,8 +132,8 @@ fn survey_frames(
     let mut survey = Survey::new(!plan.is_stream());
     let add = |survey: &mut Survey, number: u64, frame| {
         let particles = survey.particles(path, frame, options)?;
-        let job = Job { frame: Some(number), ..job.clone() };
-        survey.add(&job, particles, options).map_err(|error| error.of_frame(number))
+        let setup = RenderSetup { frame: Some(number), ..setup.clone() };
+        survey.add(&setup, particles, options).map_err(|error| error.of_frame(number))
     };
     if plan.count().is_none() {
         if let Some(number) = plan.shot(0).and_then(|shot| shot.frame)
@@ -159,13 +162,13 @@ fn survey_frames(
 }
 
 /// Prints which frames the camera shows.
-fn print_framing(job: &Job, plan: &Plan) {
-    if job.report.quiet {
+fn print_framing(setup: &RenderSetup, plan: &Plan) {
+    if setup.report.quiet {
         return;
     }
     match (plan.frame_count(), plan.count()) {
         (Some(1), Some(1)) => {}
-        (Some(frames), Some(pictures)) if job.views.turntable().is_some() => {
+        (Some(frames), Some(pictures)) if setup.views.turntable().is_some() => {
             let (shown, frames) = (frames.min(pictures), plural(frames, "frame"));
             let pictures = plural(pictures, "picture");
             output::note(format_args!(
@@ -176,7 +179,7 @@ fn print_framing(job: &Job, plan: &Plan) {
             output::note(format_args!("one camera frames all of {}", plural(frames, "frame")));
         }
         _ => {
-            let ranged = matches!(&job.request.style.coloring, Coloring::Column(colors) if colors.ends.is_none());
+            let ranged = matches!(&setup.request.style.coloring, Coloring::Column(colors) if colors.ends.is_none());
             let colors = if ranged { ", and its color range applies to all images" } else { "" };
             output::note(format_args!(
                 "the camera frames the first frame{colors}: the input can be read only once"
@@ -187,7 +190,7 @@ fn print_framing(job: &Job, plan: &Plan) {
 
 /// Images that are rendered one after another.
 struct Sequence<'a> {
-    job: Job<'a>,
+    setup: RenderSetup<'a>,
     plan: Plan,
     files: &'a Files,
     session: Session<'a>,
@@ -237,10 +240,10 @@ impl Sequence<'_> {
             if let Some(next) = next.filter(|_| !self.plan.is_stream()) {
                 reader.read_ahead(next, frame.len());
             }
-            let angle = shot.turn.map(|turn| self.job.views.angle(turn));
+            let angle = shot.turn.map(|turn| self.setup.views.angle(turn));
             let result = survey.particles(path, frame, options).map_err(Failure::from);
             let result = result.and_then(|particles| {
-                let common = survey.common(&self.job, angle)?;
+                let common = survey.common(&self.setup, angle)?;
                 self.picture(index, &shot, Some(particles), Some(common))
             });
             let code = result.map_err(|error| error.of_frame(number))?;
@@ -256,7 +259,7 @@ impl Sequence<'_> {
 
     /// Returns whether an image is rendered in this run.
     fn is_rendered_here(&self, index: u64) -> bool {
-        is_assigned(&self.job, index) && index >= self.job.sequence.first_picture.unwrap_or(0)
+        is_assigned(&self.setup, index) && index >= self.setup.sequence.first_picture.unwrap_or(0)
     }
 
     /// Returns the frame of the next image that is rendered in this run, if there is one.
@@ -267,7 +270,7 @@ impl Sequence<'_> {
 
     /// Returns whether no image of this process follows, as far as is known.
     fn is_last(&self, index: u64) -> bool {
-        let stride = self.job.deal.map_or(1, |part| u64::from(part.count()));
+        let stride = self.setup.deal.map_or(1, |part| u64::from(part.count()));
         self.plan.shot(index.saturating_add(stride)).is_none()
     }
 
@@ -280,20 +283,20 @@ impl Sequence<'_> {
     ) -> Result<ExitCode, Failure> {
         let Shot { frame, turn, number } = *shot;
         let place = Some(Place { index, last: self.is_last(index) });
-        let mut job = Job { turn, frame, common, place, ..self.job.clone() };
-        if job.video.is_none() {
-            job.output = numbered(&self.job.output, number, self.plan.digits());
-            picture_file::check(&job.output)?;
+        let mut setup = RenderSetup { turn, frame, common, place, ..self.setup.clone() };
+        if setup.video.is_none() {
+            setup.output = numbered(&self.setup.output, number, self.plan.digits());
+            picture_file::check(&setup.output)?;
             if self.plan.count().is_none() {
-                self.files.check_output("--output", &job.output)?;
+                self.files.check_output("--output", &setup.output)?;
             }
         }
         let session = &mut self.session;
         session.notices.start_picture(number);
         let resumed = self.resumed.take();
-        let code = render_placed(&job, PlacedScene::load(&job, particles)?, session, resumed)?;
+        let code = render_placed(&setup, PlacedScene::load(&setup, particles)?, session, resumed)?;
         // A color bar in a file is the same for all images.
-        self.job.color_bar = inside(self.job.color_bar);
+        self.setup.color_bar = inside(self.setup.color_bar);
         Ok(code)
     }
 
@@ -302,10 +305,10 @@ impl Sequence<'_> {
         let Session { notices, video, .. } = self.session;
         notices.summarize(self.plan.noun());
         if notices.pictures() == 0 {
-            let which = self.job.deal.map_or_else(String::new, |part| format!(" of part {part}"));
+            let which = self.setup.deal.map_or_else(String::new, |part| format!(" of part {part}"));
             output::warn(format_args!("there is no image{which} to render"));
         }
-        if !self.job.report.quiet && notices.kept() > 0 {
+        if !self.setup.report.quiet && notices.kept() > 0 {
             let (kept, pictures) = (notices.kept(), notices.pictures());
             output::note(format_args!(
                 "{kept} of {pictures} images already existed and were skipped"
@@ -313,7 +316,7 @@ impl Sequence<'_> {
         }
         if let Some(video) = video {
             let summary = video.finish()?;
-            if !self.job.report.quiet {
+            if !self.setup.report.quiet {
                 output::print(summary);
             }
         }

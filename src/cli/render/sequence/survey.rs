@@ -3,8 +3,8 @@
 
 use crate::cli::contents::plural;
 use crate::cli::failure::Failure;
-use crate::cli::render::job::{Common, Job};
 use crate::cli::render::prepare::stage;
+use crate::cli::render::setup::{Common, RenderSetup};
 use spherule_render::compose::{self, Shared, Staged};
 use spherule_render::scene::FileError;
 use spherule_render::scene::particles::{
@@ -61,17 +61,17 @@ impl Survey {
     /// Surveys the particles of a frame.
     pub(super) fn add(
         &mut self,
-        job: &Job,
+        setup: &RenderSetup,
         particles: Particles,
         options: &ReadOptions,
     ) -> Result<(), Failure> {
         self.frames += 1;
         let radius = guessed(&particles, options);
-        if let Coloring::Column(colors) = &job.request.style.coloring {
+        if let Coloring::Column(colors) = &setup.request.style.coloring {
             self.numeric |= colors.is_numeric(&particles);
         }
         // The arrows of later frames have the sizes of those before.
-        let mut sized = job.clone();
+        let mut sized = setup.clone();
         self.fix_arrows(sized.request.style.arrows.as_mut());
         let mut staged = stage(&sized, Some(particles))?;
         self.arrow_sizes = self.arrow_sizes.or(staged.arrow_sizes);
@@ -91,8 +91,8 @@ impl Survey {
         if self.shown == 1 {
             self.radius = radius;
             self.warnings = std::mem::take(&mut staged.scene.warnings);
-            compose::choose(&job.request, &mut staged).map_err(|fault| job.refuse(fault))?;
-            compose::leave_room(&mut staged.scene, job.request.camera.turns);
+            compose::choose(&setup.request, &mut staged).map_err(|fault| setup.refuse(fault))?;
+            compose::leave_room(&mut staged.scene, setup.request.camera.turns);
             self.orientation = staged.orientation;
             self.bounds = SequenceBounds::new(&staged.scene);
         }
@@ -148,17 +148,21 @@ impl Survey {
     }
 
     /// Returns the shared properties, for a turntable at `angle`.
-    pub(super) fn common(&self, job: &Job, angle: Option<f64>) -> Result<Common, Failure> {
+    pub(super) fn common(
+        &self,
+        setup: &RenderSetup,
+        angle: Option<f64>,
+    ) -> Result<Common, Failure> {
         let view = |angle| {
             let found = self.bounds.as_ref().ok_or(WorldError::NothingToFit);
-            let failure = |error| Failure::World(job.source.name().into_owned(), error);
+            let failure = |error| Failure::World(setup.source.name().into_owned(), error);
             found.and_then(|bounds| bounds.view(angle)).map_err(failure)
         };
         // The ground is below all frames, for every view.
         let mut still = view(None)?;
-        if let Some(preset) = job.preset() {
+        if let Some(preset) = setup.preset() {
             let vertical =
-                compose::vertical(&job.request, &still.camera, self.orientation.as_ref());
+                compose::vertical(&setup.request, &still.camera, self.orientation.as_ref());
             preset.light(&mut still, vertical);
         }
         let ground = still.ground.map(|ground| ground.height);

@@ -36,7 +36,7 @@ impl App {
         let (scene, picture, path) = (Arc::clone(scene), picture.clone(), free_name(&self.output));
         let (title, camera) = (self.viewer.facts.title.clone(), self.viewer.control.camera.clone());
         let (notify, look) = (Arc::clone(&self.notify), self.viewer.look());
-        let (job, origin) = (Arc::clone(&self.job), self.origin.clone());
+        let (setup, origin) = (Arc::clone(&self.setup), self.origin.clone());
         let facts = self.viewer.facts.clone();
         self.viewer.show_message(format!("saving {}", path.display()));
         let saver = std::thread::spawn(move || {
@@ -44,7 +44,7 @@ impl App {
             let seen = SavedImage { title, camera, settings, look, picture: &picture };
             let toml = path.with_extension("toml");
             let saved = save_picture(&seen, &path)
-                .and_then(|()| save_bar(&job, &facts, settings.height))
+                .and_then(|()| save_bar(&setup, &facts, settings.height))
                 .and_then(|()| save_scene(&seen, &scene, origin.as_ref(), &toml));
             notify(Message::Saved(saved.map(|()| path)));
         });

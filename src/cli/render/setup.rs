@@ -1,4 +1,4 @@
-//! A render job: scene, settings and output, validated as far as possible without the scene.
+//! The setup of a render: scene, settings and output, validated as far as possible without the scene.
 
 use super::args::RenderArgs;
 use super::video::Container;
@@ -47,14 +47,14 @@ pub(in crate::cli) struct Common {
     pub(in crate::cli) frames_all: bool,
 }
 
-/// A render job.
+/// The setup of a render: the arguments of its command, validated, and the place of its image in a sequence.
 #[derive(Clone)]
-pub(in crate::cli) struct Job<'a> {
+pub(in crate::cli) struct RenderSetup<'a> {
     pub(in crate::cli) source: Source,
     /// The request for the scene.
     pub(in crate::cli) request: Request,
-    /// The options on the command line.
-    pub(in crate::cli) typed: (&'a ParticleArgs, &'a AppearanceArgs),
+    pub(in crate::cli) particles: &'a ParticleArgs,
+    pub(in crate::cli) looks: &'a AppearanceArgs,
     pub(in crate::cli) color_bar: Option<&'a BarPlace>,
     pub(in crate::cli) output: PathBuf,
     /// Format of the image, or of the image on the page.
@@ -90,8 +90,8 @@ pub(in crate::cli) struct Job<'a> {
     pub(in crate::cli) report: ReportArgs,
 }
 
-impl<'a> Job<'a> {
-    /// Creates the job from the arguments.
+impl<'a> RenderSetup<'a> {
+    /// Creates the setup from the arguments.
     pub(in crate::cli) fn new(args: &'a RenderArgs) -> Result<Self, Failure> {
         let seed = args.picture.settings.seed().unwrap_or(0);
         // An explicit format applies to images, whatever their names.
@@ -165,7 +165,8 @@ impl<'a> Job<'a> {
         Ok(Self {
             source: with_columns(source, &looks)?,
             request: request(args, looks, part.is_some()),
-            typed: (&args.particles, &args.looks),
+            particles: &args.particles,
+            looks: &args.looks,
             color_bar: args.looks.color_bar.as_ref(),
             output: args.output.clone(),
             format,
