@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use super::files::STREAM;
 use super::output;
-use spherule_render::atomic::check_destination;
+use super::write_file::check_destination;
 use spherule_render::film::Region;
 use spherule_render::image::Format;
 use std::io::{IsTerminal, stdout};
@@ -28,7 +28,7 @@ pub(super) fn check(path: &Path) -> Result<(), Failure> {
     if is_stream(path) {
         return Ok(());
     }
-    check_destination(path).map_err(|error| Failure::Write(path.to_owned(), error))
+    check_destination(path)
 }
 
 /// Reserves standard output for the image if it goes there; rejects a terminal, and `--json` at the same

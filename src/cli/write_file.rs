@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use super::files::STREAM;
 use super::{output, signals};
-use spherule_render::atomic::write_atomically;
+use spherule_render::atomic::{self, write_atomically};
 use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
@@ -13,6 +13,11 @@ use std::{thread, time::Duration};
 /// Time between two checks for a reader of a pipe.
 #[cfg(target_os = "linux")]
 const PAUSE: Duration = Duration::from_millis(20);
+
+/// Checks that a file can be written, without changing anything.
+pub(super) fn check_destination(path: &Path) -> Result<(), Failure> {
+    atomic::check_destination(path).map_err(|error| Failure::Write(path.to_owned(), error))
+}
 
 /// Writes a file atomically, or writes to a device, a pipe or standard output, whose name is `-`.
 ///

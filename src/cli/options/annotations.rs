@@ -1,8 +1,7 @@
 //! Options for annotations of the image.
 
-use super::lists::List;
+use super::lists::{self, List};
 use super::with_text::{self, WithText};
-use serde_json::json;
 use spherule_render::compose::{AnnotationRequest, Axes, Bar, LabelText, ink, position, text_size};
 use spherule_render::scene::{Anchor, Rgb};
 use std::str::FromStr;
@@ -76,15 +75,11 @@ impl AnnotationArgs {
     /// Settings for the image's metadata.
     pub(in crate::cli) fn list(&self) -> List {
         let mut list = List::new();
-        if let Some(position) = self.legend {
-            list.insert("legend".to_owned(), json!(position.name()));
-        }
+        lists::put(&mut list, "legend", self.legend.map(Anchor::name));
         with_text::insert(&mut list, "axes", &self.axes);
         with_text::insert(&mut list, "scale_bar", &self.scale_bar);
         with_text::insert(&mut list, "label", &self.labels);
-        if let Some(size) = self.text_size {
-            list.insert("text_size".to_owned(), json!(size));
-        }
+        lists::put(&mut list, "text_size", self.text_size);
         with_text::insert(&mut list, "text_color", &self.text_color);
         list
     }

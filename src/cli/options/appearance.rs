@@ -1,9 +1,9 @@
 //! Options for the appearance of particles.
 
-use super::lists::List;
+use super::lists::{self, List};
+use super::values;
 use super::with_text::{self, WithText};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use serde_json::{Value, json};
 use spherule_render::color::{self, Map, Spacing};
 use spherule_render::graphics::Format;
 use spherule_render::scene::particles::{
@@ -64,7 +64,7 @@ pub(in crate::cli) struct AppearanceArgs {
     )]
     bonds: Option<WithText<BondSource>>,
     /// Radius of the sticks of bonds, in the file's unit [default: a tenth of the median radius, 0.15 in licorice]
-    #[arg(long, value_name = "R", value_parser = radius)]
+    #[arg(long, value_name = "R", value_parser = values::positive)]
     bond_radius: Option<f64>,
     /// Opacity of particles, and of their bonds: a number from 0 to 1, or a column whose numbers it is, perhaps with
     /// those that become 0 and 1, as in charge:-1,1. What is behind is seen without refraction, and shadows are as
@@ -84,11 +84,11 @@ pub(in crate::cli) struct AppearanceArgs {
     arrows: Option<WithText<VectorColumns>>,
     /// Length of the arrow of a vector of length 1, in the file's unit [default: the median arrow is four times as
     /// long as the median radius]
-    #[arg(long, value_name = "FACTOR", value_parser = radius, requires = "arrows")]
+    #[arg(long, value_name = "FACTOR", value_parser = values::positive, requires = "arrows")]
     arrow_scale: Option<f64>,
     /// Radius of the shafts of arrows, in the file's unit; short arrows are thinner [default: a quarter of the
     /// median radius]
-    #[arg(long, value_name = "R", value_parser = radius, requires = "arrows")]
+    #[arg(long, value_name = "R", value_parser = values::positive, requires = "arrows")]
     arrow_radius: Option<f64>,
     /// Color of all arrows, #rrggbb or a CSS name [default: that of each particle]
     #[arg(
@@ -99,7 +99,7 @@ pub(in crate::cli) struct AppearanceArgs {
     )]
     arrow_color: Option<WithText<ArrowColor>>,
     /// Part of an arrow that is at its particle: tail, middle or head [default: tail]
-    #[arg(long, value_name = "tail|middle|head", value_parser = centering, requires = "arrows")]
+    #[arg(long, value_name = "tail|middle|head", value_parser = |name: &str| values::named(&ArrowCentering::ALL, name, "parts of arrows are"), requires = "arrows")]
     arrow_center: Option<ArrowCentering>,
     /// Radius, color, material and opacity of a particle type, by its name or element; overrides all else; may be
     /// repeated. Colors are #rrggbb or CSS names; materials are lambertian, plastic, metal, glass, mirror and
@@ -131,12 +131,6 @@ impl FromStr for ArrowColor {
     fn from_str(text: &str) -> Result<Self, String> {
         color::of_name(text).map(Self)
     }
-}
-
-fn centering(text: &str) -> Result<ArrowCentering, String> {
-    let found = ArrowCentering::ALL.iter().find(|(name, _)| *name == text).map(|(_, own)| *own);
-    let names = || ArrowCentering::ALL.map(|(name, _)| name).into_iter();
-    found.ok_or_else(|| suggest::help(text, names(), "parts of arrows are"))
 }
 
 /// Place of a color bar.
@@ -198,11 +192,6 @@ fn model() -> impl TypedValueParser<Value = Model> {
         let found = Model::ALL.iter().find(|(own, _)| *own == name);
         found.map(|(_, model)| *model).ok_or("not one of the names")
     })
-}
-
-fn radius(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|number| *number > 0.0 && *number < f64::INFINITY);
-    number.ok_or_else(|| "give a number greater than 0".to_owned())
 }
 
 /// `LOW,HIGH` or `auto`.
@@ -269,40 +258,29 @@ impl AppearanceArgs {
     pub(in crate::cli) fn list(&self, legend: Option<&Legend>) -> List {
         let mut list = List::new();
         with_text::insert(&mut list, "select", &self.select);
-        let mut put = |name: &str, value: Value| list.insert(name.to_owned(), value);
         match &self.color_by {
-            Some(column) => put("color_by", json!(column)),
-            None => self.colors.and_then(|scheme| put("colors", json!(scheme.name()))),
-        };
+            Some(column) => lists::put(&mut list, "color_by", Some(&**column)),
+            None => lists::put(&mut list, "colors", self.colors.map(Scheme::name)),
+        }
         if let Some(Legend { scale, .. }) = legend {
             let reversed = if scale.reversed { "_r" } else { "" };
-            put("color_map", json!(format!("{}{reversed}", scale.map.name())));
-            put("color_range", json!(format!("{},{}", scale.range.low(), scale.range.high())));
-            if self.color_log {
-                put("color_log", json!(true));
-            }
+            let ends = format!("{},{}", scale.range.low(), scale.range.high());
+            lists::put(&mut list, "color_map", Some(format!("{}{reversed}", scale.map.name())));
+            lists::put(&mut list, "color_range", Some(ends));
+            lists::put(&mut list, "color_log", self.color_log.then_some(true));
         }
-        if let Some(model) = self.model {
-            put("model", json!(model.name()));
-        }
-        if let Some(radius) = self.bond_radius {
-            put("bond_radius", json!(radius));
-        }
+        lists::put(&mut list, "model", self.model.map(Model::name));
+        lists::put(&mut list, "bond_radius", self.bond_radius);
         with_text::insert(&mut list, "bonds", &self.bonds);
         with_text::insert(&mut list, "opacity", &self.opacity);
         with_text::insert(&mut list, "translucent", &self.translucent);
         with_text::insert(&mut list, "arrows", &self.arrows);
-        if let Some(scale) = self.arrow_scale {
-            list.insert("arrow_scale".to_owned(), json!(scale));
-        }
-        if let Some(radius) = self.arrow_radius {
-            list.insert("arrow_radius".to_owned(), json!(radius));
-        }
+        lists::put(&mut list, "arrow_scale", self.arrow_scale);
+        lists::put(&mut list, "arrow_radius", self.arrow_radius);
         with_text::insert(&mut list, "arrow_color", &self.arrow_color);
         let named = |(_, own): &&(&str, ArrowCentering)| Some(*own) == self.arrow_center;
-        if let Some((name, _)) = ArrowCentering::ALL.iter().find(named) {
-            list.insert("arrow_center".to_owned(), json!(name));
-        }
+        let center = ArrowCentering::ALL.iter().find(named);
+        lists::put(&mut list, "arrow_center", center.map(|(name, _)| *name));
         with_text::insert(&mut list, "type", &self.types);
         list
     }

@@ -10,6 +10,13 @@ use spherule_render::settings::{self, Role, Scope, TONES};
 /// Names and values, in order.
 pub(in crate::cli) type List = Map<String, Value>;
 
+/// Adds a value to a list, if there is one.
+pub(in crate::cli) fn put(list: &mut List, name: &str, value: Option<impl Into<Value>>) {
+    if let Some(value) = value {
+        list.insert(name.to_owned(), value.into());
+    }
+}
+
 /// Lists all settings that determine the image, by the names of scene files, and nothing else: equal images
 /// have equal lists.
 pub(in crate::cli) fn of_settings(settings: &Settings, region: Region) -> List {

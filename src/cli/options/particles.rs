@@ -1,19 +1,19 @@
 //! Options for reading particle files, and a summary of their contents.
 
 use super::frames::{FrameArg, FrameRange};
-use super::lists::List;
+use super::lists::{self, List};
+use super::values;
 use super::with_text::{self, WithText};
 use crate::cli::failure::Failure;
 use crate::cli::info::rows::RowInfo;
 use crate::cli::output;
 use indicatif::HumanCount;
 use serde::Serialize;
-use serde_json::json;
 use spherule_render::scene::particles::{
     Columns, Element, Format, FrameChoice, LengthUnit, Orientation, Particles, Radii, ReadOptions,
     Selection, count_frames,
 };
-use spherule_render::suggest;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 /// Options for reading a particle file.
@@ -23,7 +23,7 @@ pub(in crate::cli) struct ParticleArgs {
     /// File format [default: detected]: xyzr, csv, xyz, lammps-dump, lammps-data, gro, pdb, mmcif, cif, gsd,
     /// ply, npy, npz, dcd, xtc, trr, netcdf, hdf5, pqr, poscar, sdf, mol2, xsf, cfg
     /// or psf
-    #[arg(long, value_parser = format)]
+    #[arg(long, value_parser = |name: &str| values::named(&Format::ALL, name, "formats are"))]
     format: Option<Format>,
     /// Meaning of columns, as in x=px,radius=size,type=species
     #[arg(long, value_name = "ROLE=NAME,...", value_parser = |text: &str| text.parse::<WithText<Columns>>())]
@@ -36,7 +36,7 @@ pub(in crate::cli) struct ParticleArgs {
     #[arg(long, value_name = "vdw|covalent|column:NAME|R", value_parser = |text: &str| text.parse::<WithText<Radii>>())]
     radii: Option<WithText<Radii>>,
     /// Scale factor for all radii
-    #[arg(long, value_name = "FACTOR", value_parser = positive)]
+    #[arg(long, value_name = "FACTOR", value_parser = values::positive)]
     radius_scale: Option<f64>,
     /// Atom style of a LAMMPS data file that does not name it, as in full or "hybrid sphere dipole"
     #[arg(long, value_name = "STYLE")]
@@ -64,17 +64,6 @@ pub(in crate::cli) struct ParticleArgs {
     /// Draw where each particle was in the N frames before, as far as there are any, as thin sticks of its color
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     trail: Option<u32>,
-}
-
-fn format(name: &str) -> Result<Format, String> {
-    let found = Format::ALL.iter().find(|(own, _)| *own == name).map(|(_, format)| *format);
-    let names = || Format::ALL.map(|(name, _)| name).into_iter();
-    found.ok_or_else(|| suggest::help(name, names(), "formats are"))
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|number| *number > 0.0 && *number < f64::INFINITY);
-    number.ok_or_else(|| "give a number greater than 0".to_owned())
 }
 
 impl ParticleArgs {
@@ -118,35 +107,22 @@ impl ParticleArgs {
     /// Settings for the image's metadata; `frame` is the frame of a sequence that the image shows.
     pub(in crate::cli) fn list(&self, frame: Option<u64>) -> List {
         let mut list = List::new();
-        if let Some(format) = self.format {
-            list.insert("format".to_owned(), json!(format.name()));
-        }
+        lists::put(&mut list, "format", self.format.map(Format::name));
         with_text::insert(&mut list, "columns", &self.columns);
         match frame {
-            Some(number) => _ = list.insert("frame".to_owned(), json!(number)),
+            Some(_) => lists::put(&mut list, "frame", frame),
             None => with_text::insert(&mut list, "frame", &self.frame),
         }
         with_text::insert(&mut list, "radii", &self.radii);
-        if let Some(scale) = self.radius_scale {
-            list.insert("radius_scale".to_owned(), json!(scale));
-        }
-        if let Some(style) = &self.atom_style {
-            list.insert("atom_style".to_owned(), json!(style));
-        }
+        lists::put(&mut list, "radius_scale", self.radius_scale);
+        lists::put(&mut list, "atom_style", self.atom_style.as_deref());
         // Without folders, which are private.
-        if let Some(name) = self.topology.as_deref().and_then(Path::file_name) {
-            list.insert("topology".to_owned(), json!(name.to_string_lossy()));
-        }
-        if self.whole {
-            list.insert("whole".to_owned(), json!(true));
-        }
+        let name = self.topology.as_deref().and_then(Path::file_name);
+        lists::put(&mut list, "topology", name.map(OsStr::to_string_lossy));
+        lists::put(&mut list, "whole", self.whole.then_some(true));
         with_text::insert(&mut list, "align", &self.align);
-        if let Some(frames) = self.smooth {
-            list.insert("smooth".to_owned(), json!(frames));
-        }
-        if let Some(frames) = self.trail {
-            list.insert("trail".to_owned(), json!(frames));
-        }
+        lists::put(&mut list, "smooth", self.smooth);
+        lists::put(&mut list, "trail", self.trail);
         list
     }
 

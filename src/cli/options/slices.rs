@@ -1,9 +1,9 @@
 //! Options for slices: planes that cut spheres away.
 
 use super::lists::List;
+use super::values;
 use serde_json::json;
 use spherule_render::scene::{Slice, SliceMode, SlicePlane};
-use spherule_render::suggest;
 
 /// Options for slices.
 #[derive(Clone, Debug, Default, clap::Args)]
@@ -17,14 +17,8 @@ pub(in crate::cli) struct SliceArgs {
     /// Treatment of spheres: remove drops spheres whose centers are cut away, caps cuts spheres and closes
     /// them with flat caps of their own color, hide makes spheres whose centers are cut away invisible to the
     /// camera but keeps their shadows [default: remove]
-    #[arg(long, value_name = "MODE", requires = "planes", value_parser = mode)]
+    #[arg(long, value_name = "MODE", requires = "planes", value_parser = |name: &str| values::named(&SliceMode::ALL, name, "modes are"))]
     slice_mode: Option<SliceMode>,
-}
-
-fn mode(name: &str) -> Result<SliceMode, String> {
-    let found = SliceMode::ALL.iter().find(|(own, _)| *own == name).map(|(_, mode)| *mode);
-    let names = || SliceMode::ALL.map(|(name, _)| name).into_iter();
-    found.ok_or_else(|| suggest::help(name, names(), "modes are"))
 }
 
 impl SliceArgs {

@@ -1,7 +1,6 @@
 //! Options for presets and backgrounds.
 
-use super::lists::List;
-use serde_json::json;
+use super::lists::{self, List};
 use spherule_render::scene::{Background, Preset};
 use spherule_render::{color, suggest};
 
@@ -63,12 +62,8 @@ impl StyleArgs {
     /// Settings for the image's metadata.
     pub(in crate::cli) fn list(&self) -> List {
         let mut list = List::new();
-        if let Some(preset) = self.preset {
-            list.insert("preset".to_owned(), json!(preset.name()));
-        }
-        if let Some(typed) = &self.background {
-            list.insert("background".to_owned(), json!(typed.text));
-        }
+        lists::put(&mut list, "preset", self.preset.map(Preset::name));
+        lists::put(&mut list, "background", self.background.as_ref().map(|typed| &*typed.text));
         list
     }
 }

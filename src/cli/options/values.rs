@@ -172,6 +172,22 @@ pub(in crate::cli) fn copies(text: &str) -> Result<[u32; 3], String> {
         .ok_or_else(|| "give three integers of at least 1, as in 2,2,1".to_owned())
 }
 
+/// Returns the value of a name; `what` introduces the list of all names in the error.
+pub(in crate::cli) fn named<T: Copy>(
+    table: &[(&'static str, T)],
+    name: &str,
+    what: &str,
+) -> Result<T, String> {
+    let found = table.iter().find(|(own, _)| *own == name).map(|(_, value)| *value);
+    found.ok_or_else(|| suggest::help(name, table.iter().map(|(name, _)| *name), what))
+}
+
+/// A finite number greater than 0.
+pub(in crate::cli) fn positive(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number| *number > 0.0 && *number < f64::INFINITY);
+    number.ok_or_else(|| "give a number greater than 0".to_owned())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,9 +3,8 @@
 use super::setup::RenderSetup;
 use crate::cli::failure::Failure;
 use crate::cli::options::appearance::BarPlace;
-use crate::cli::write_file::write_file;
+use crate::cli::write_file::{check_destination, write_file};
 use spherule_render::World;
-use spherule_render::atomic::check_destination;
 use spherule_render::overlay::Canvas;
 use spherule_render::overlay::annotations::{self, AnnotationDrawing};
 use spherule_render::overlay::color_bar::Bar;
@@ -15,7 +14,7 @@ use spherule_render::scene::{Annotations, Look};
 /// Checks that the color bar can be written, without changing anything.
 pub(in crate::cli) fn check_bar(setup: &RenderSetup) -> Result<(), Failure> {
     let Some(BarPlace::File(path, _)) = setup.color_bar else { return Ok(()) };
-    check_destination(path).map_err(|error| Failure::Write(path.clone(), error))
+    check_destination(path)
 }
 
 /// Rejects a color bar if colors do not represent numbers.

@@ -9,7 +9,7 @@ use super::setup::RenderSetup;
 use crate::cli::contents::spheres;
 use crate::cli::failure::Failure;
 use crate::cli::output;
-use spherule_render::atomic::check_destination;
+use crate::cli::write_file::check_destination;
 use spherule_render::memory::Size;
 use spherule_render::prepared::{self, PrepareError};
 use spherule_render::scene::{Identity, Settings};
@@ -18,7 +18,7 @@ use std::process::ExitCode;
 
 /// Writes the scene of a setup to a file.
 pub(super) fn write(setup: &RenderSetup, file: &Path) -> Result<ExitCode, Failure> {
-    check_destination(file).map_err(|error| Failure::Write(file.to_owned(), error))?;
+    check_destination(file)?;
     let mut placed = PlacedScene::load(setup, None)?;
     let settings = &mut placed.scene.settings;
     if !settings.stop_given {

@@ -1,7 +1,8 @@
 //! Videos: images that are piped to `ffmpeg` as they are rendered.
 
 use crate::cli::failure::Failure;
-use spherule_render::atomic::{Pending, check_destination, remove_leftovers};
+use crate::cli::write_file::check_destination;
+use spherule_render::atomic::{Pending, remove_leftovers};
 use spherule_render::image::tone::{Codes8, DisplayTransform};
 use spherule_render::image::{Image, WriteOptions};
 use std::io::{self, ErrorKind, Read, Write};
@@ -98,7 +99,7 @@ impl Video {
         container: Container,
         fps: Option<f64>,
     ) -> Result<Self, Failure> {
-        check_destination(path).map_err(|error| Failure::Write(path.to_owned(), error))?;
+        check_destination(path)?;
         let fps = fps.unwrap_or(FPS);
         let found = Command::new(PROGRAM)
             .arg("-version")

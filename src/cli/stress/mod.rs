@@ -8,12 +8,13 @@ pub(super) use self::args::{Args, EXAMPLES};
 use super::failure::Failure;
 use super::files::Files;
 use super::progress::{Meter, rate};
+use super::write_file::check_destination;
 use super::{output, threads};
 use indicatif::HumanCount;
 use serde::Serialize;
 use spherule_measure::report::draw::draw;
 use spherule_measure::stress::{self, Form, Options, REGIMES, Regime, Report};
-use spherule_render::atomic::{check_destination, write_atomically};
+use spherule_render::atomic::write_atomically;
 use spherule_render::graphics::Format;
 use spherule_render::render::Progress;
 use std::io;
@@ -41,7 +42,7 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     args.plot.iter().for_each(|path| files.writes("--plot", path));
     files.check()?;
     for path in args.csv.iter().chain(&args.plot) {
-        check_destination(path).map_err(|error| Failure::Write(path.clone(), error))?;
+        check_destination(path)?;
     }
     let report = measure(args)?;
     if let Some(path) = &args.csv {

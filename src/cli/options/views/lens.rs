@@ -1,8 +1,7 @@
 //! Options for the lens of the camera.
 
-use crate::cli::options::lists::List;
+use crate::cli::options::lists::{self, List};
 use crate::cli::options::with_text::{self, WithText};
-use serde_json::json;
 use spherule_render::compose::{Focus, LensRequest};
 use spherule_render::scene::Scene;
 
@@ -44,9 +43,7 @@ impl LensArgs {
     /// Settings for the image's metadata.
     pub(super) fn list(&self) -> List {
         let mut list = List::new();
-        if let Some(aperture) = self.aperture {
-            list.insert("aperture".to_owned(), json!(aperture));
-        }
+        lists::put(&mut list, "aperture", self.aperture);
         with_text::insert(&mut list, "focus", &self.focus);
         list
     }

@@ -5,12 +5,11 @@ mod lens;
 
 use self::camera::UpArg;
 use self::lens::LensArgs;
-use super::lists::List;
+use super::lists::{self, List};
 use super::names::{self, Names};
 use super::values;
 use crate::cli::failure::Failure;
 use clap::value_parser;
-use serde_json::json;
 use spherule_render::compose::{CameraRequest, CellRequest, LensRequest};
 use spherule_render::scene::particles::{Orientation, UpReason};
 use spherule_render::scene::{Axis, Camera, Projection, Scene};
@@ -96,27 +95,14 @@ impl ViewArgs {
     /// Settings for the image's metadata.
     pub(in crate::cli) fn list(&self) -> List {
         let mut list = List::new();
-        if self.wrap {
-            list.insert("wrap".to_owned(), json!(true));
-        }
-        if let Some([a, b, c]) = self.replicate {
-            list.insert("replicate".to_owned(), json!(format!("{a},{b},{c}")));
-        }
-        if self.cell {
-            list.insert("cell".to_owned(), json!(true));
-        }
-        if let Some(up) = self.up {
-            list.insert("up".to_owned(), json!(up.name()));
-        }
-        if let Some(view) = self.view {
-            list.insert("view".to_owned(), json!(view.name()));
-        }
-        if let Some(projection) = self.projection {
-            list.insert("projection".to_owned(), json!(PROJECTIONS.name(&projection)));
-        }
-        if let Some(margin) = self.margin {
-            list.insert("margin".to_owned(), json!(margin));
-        }
+        lists::put(&mut list, "wrap", self.wrap.then_some(true));
+        lists::put(&mut list, "replicate", self.replicate.map(|[a, b, c]| format!("{a},{b},{c}")));
+        lists::put(&mut list, "cell", self.cell.then_some(true));
+        lists::put(&mut list, "up", self.up.map(UpArg::name));
+        lists::put(&mut list, "view", self.view.map(View::name));
+        let projection = self.projection.map(|projection| PROJECTIONS.name(&projection));
+        lists::put(&mut list, "projection", projection);
+        lists::put(&mut list, "margin", self.margin);
         list.extend(self.lens.list());
         list
     }
