@@ -18,6 +18,7 @@ mod output;
 mod picture_file;
 mod processor;
 mod progress;
+mod ranges;
 mod render;
 mod signals;
 mod source;

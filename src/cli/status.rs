@@ -1,6 +1,7 @@
 //! `spherule status`: progress of parts and checkpoints.
 
 use super::output;
+use super::ranges::ranges;
 use indicatif::HumanDuration;
 use serde::Serialize;
 use spherule_render::checkpoint::{CheckpointError, Origin, inspect, is_locked};
@@ -77,7 +78,7 @@ struct Report {
     /// Samples and tiles that belong to no file.
     missing: Vec<String>,
     /// Parts without a file, by the names of the others.
-    missing_parts: Vec<u32>,
+    missing_parts: Vec<u64>,
     /// Estimated remaining render time, summed over parts; null if unknown.
     remaining_seconds: Option<f64>,
     /// Estimated remaining render time of the file that needs most.
@@ -159,7 +160,8 @@ impl Report {
         let width = self.files.iter().map(|file| file.file.chars().count()).max().unwrap_or(0);
         self.files.iter().for_each(|file| file.print(width));
         if !self.missing_parts.is_empty() {
-            output::print(format_args!("no file for parts {}", ranges(&self.missing_parts)));
+            let missing = ranges(&self.missing_parts, usize::MAX);
+            output::print(format_args!("no file for parts {missing}"));
         }
         for missing in &self.missing {
             output::print(format_args!("no file has {missing}"));
@@ -308,7 +310,7 @@ fn overlap(files: &[FileReport], status: &Status) -> Option<String> {
 }
 
 /// Returns the numbers of missing parts, if all names end in `K-of-N.part` with the same N.
-fn missing_parts(paths: &[PathBuf]) -> Vec<u32> {
+fn missing_parts(paths: &[PathBuf]) -> Vec<u64> {
     let Some(numbers) = paths.iter().map(|path| number(path)).collect::<Option<Vec<_>>>() else {
         return Vec::new();
     };
@@ -316,7 +318,9 @@ fn missing_parts(paths: &[PathBuf]) -> Vec<u32> {
     let there: BTreeSet<u32> = numbers.iter().map(|number| number.0).collect();
     match counts.iter().collect::<Vec<_>>()[..] {
         // Names may contain any number.
-        [&count] if count <= 1 << 20 => (1..=count).filter(|k| !there.contains(k)).collect(),
+        [&count] if count <= 1 << 20 => {
+            (1..=count).filter(|k| !there.contains(k)).map(u64::from).collect()
+        }
         _ => Vec::new(),
     }
 }
@@ -332,7 +336,7 @@ fn started_parts(paths: &[PathBuf]) -> Vec<PathBuf> {
         return Vec::new();
     };
     let digits = count.to_string().len();
-    let file = |k: u32| path.with_file_name(format!("{stem}.{k:0digits$}-of-{count}.part"));
+    let file = |k: u64| path.with_file_name(format!("{stem}.{k:0digits$}-of-{count}.part"));
     missing_parts(paths).into_iter().map(file).filter(|path| is_locked(path)).collect()
 }
 
@@ -344,16 +348,6 @@ fn number(path: &Path) -> Option<(u32, u32)> {
     Some((number.parse().ok()?, count.parse().ok()?))
 }
 
-/// Formats ascending numbers, as in `3, 17-20`.
-fn ranges(numbers: &[u32]) -> String {
-    let runs = numbers.chunk_by(|a, b| a + 1 == *b);
-    let text = |run: &[u32]| match run {
-        [first, .., last] => format!("{first}-{last}"),
-        _ => run.iter().map(u32::to_string).collect(),
-    };
-    runs.map(text).collect::<Vec<_>>().join(", ")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -363,8 +357,6 @@ mod tests {
         let paths = |names: &[&str]| names.iter().map(PathBuf::from).collect::<Vec<_>>();
         let some = paths(&["b/a.1-of-6.part", "b/a.4-of-6.part"]);
         assert_eq!(missing_parts(&some), [2, 3, 5, 6]);
-        assert_eq!(ranges(&missing_parts(&some)), "2-3, 5-6");
-        assert_eq!(ranges(&[1, 3]), "1, 3");
         let others: [&[&str]; 4] = [
             &["a.1-of-6.part", "a.1-of-7.part"],
             &["a.checkpoint"],

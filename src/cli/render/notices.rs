@@ -1,10 +1,11 @@
 //! Warnings and notes about the images of a run, each printed once.
 
 use crate::cli::output;
+use crate::cli::ranges::ranges;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Maximum number of runs of numbers in a message.
+/// Maximum number of ranges in a message.
 const LISTED: usize = 8;
 
 /// Messages about the images so far.
@@ -83,13 +84,13 @@ impl Notices {
     pub(super) fn summarize(&self, noun: &str) {
         let pictures = self.pictures;
         if !self.empty.is_empty() {
-            let (count, list) = (self.empty.len(), runs(&self.empty));
+            let (count, list) = (self.empty.len(), ranges(&self.empty, LISTED));
             output::warn(format_args!(
                 "no sphere is visible in {count} of {pictures} images: {noun} {list}"
             ));
         }
         if !self.cropped.is_empty() {
-            let (count, list) = (self.cropped.len(), runs(&self.cropped));
+            let (count, list) = (self.cropped.len(), ranges(&self.cropped, LISTED));
             output::warn(format_args!(
                 "spheres are outside the view in {count} of {pictures} images: {noun} {list}; the camera is \
                  placed for the first one; write the input to a file to place it for all"
@@ -98,7 +99,7 @@ impl Notices {
         // A warning about all images needs no list.
         let some = |list: &[u64]| list.len() > 1 && (list.len() as u64) < pictures;
         for (text, list) in self.warnings.values().filter(|(_, list)| some(list)) {
-            let (count, list) = (list.len(), runs(list));
+            let (count, list) = (list.len(), ranges(list, LISTED));
             output::warn(format_args!(
                 "in {count} of {pictures} images, {noun} {list}, as in the first: {text}"
             ));
@@ -106,33 +107,9 @@ impl Notices {
     }
 }
 
-/// Numbers in ascending order as a list: `3, 5-9`.
-fn runs(numbers: &[u64]) -> String {
-    let mut runs: Vec<[u64; 2]> = Vec::new();
-    for &number in numbers {
-        match runs.last_mut() {
-            Some([_, last]) if *last + 1 >= number => *last = number,
-            _ => runs.push([number; 2]),
-        }
-    }
-    let text = |[first, last]: &[u64; 2]| {
-        if first == last { first.to_string() } else { format!("{first}-{last}") }
-    };
-    let more = if runs.len() > LISTED { ", ..." } else { "" };
-    runs.iter().take(LISTED).map(text).collect::<Vec<_>>().join(", ") + more
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn consecutive_numbers_are_ranges() {
-        assert_eq!(runs(&[3, 5, 6, 7, 9]), "3, 5-7, 9");
-        assert_eq!(runs(&[4]), "4");
-        let odd: Vec<u64> = (0..20).map(|i| 2 * i).collect();
-        assert_eq!(runs(&odd), "0, 2, 4, 6, 8, 10, 12, 14, ...");
-    }
 
     #[test]
     fn warnings_that_differ_in_numbers_are_merged() {
