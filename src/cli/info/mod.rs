@@ -1,12 +1,14 @@
 //! `spherule info`: prints the contents of a scene, its memory, and the work that a render skips.
 
-pub(super) mod rows;
+mod particles;
+mod rows;
 
+use self::particles::ParticleInfo;
 use self::rows::RowInfo;
 use super::contents::{BodyCounts, dropped, found, plural};
 use super::failure::Failure;
 use super::files::Files;
-use super::options::particles::{ParticleArgs, ParticleInfo};
+use super::options::particles::ParticleArgs;
 use super::options::{lists, slices};
 use super::source::Source;
 use super::{devices, output};

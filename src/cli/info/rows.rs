@@ -6,7 +6,7 @@ use spherule_render::scene::particles::Particles;
 
 /// The first and last particles, without repetition.
 #[derive(Serialize)]
-pub(in crate::cli) struct RowInfo {
+pub(super) struct RowInfo {
     first: Vec<ListedParticle>,
     last: Vec<ListedParticle>,
 }
@@ -24,7 +24,7 @@ struct ListedParticle {
 
 impl RowInfo {
     /// The first and the last `count` particles.
-    pub(in crate::cli) fn new(particles: &Particles, count: usize) -> Self {
+    pub(super) fn new(particles: &Particles, count: usize) -> Self {
         let all = particles.spheres.len();
         let end = count.min(all);
         let start = all.saturating_sub(count).max(end);
@@ -37,7 +37,7 @@ impl RowInfo {
         Self { first: (0..end).map(row).collect(), last: (start..all).map(row).collect() }
     }
 
-    pub(in crate::cli) fn print(&self) {
+    pub(super) fn print(&self) {
         for ListedParticle { row, position, radius, kind } in self.first.iter().chain(&self.last) {
             let kind = kind.as_ref().map_or(String::new(), |kind| format!(" {kind}"));
             output::print(format_args!(
