@@ -87,12 +87,7 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     args.memory.apply();
     let format = picture_file::format(&args.output, args.encoding.output_format)?;
     picture_file::check_stream("merge", &args.output, args.json)?;
-    if !args.encoding.layers.is_empty() && format != Format::Exr {
-        let message = format!(
-            "{format} files cannot store --layers; use an --output that ends in .exr, or --output-format exr"
-        );
-        return Err(Failure::usage("merge", message));
-    }
+    args.encoding.check_layers("merge", format)?;
     let mut files = Files::new("merge");
     args.parts.iter().for_each(|part| files.reads("a part", part));
     files.writes("--output", &args.output);

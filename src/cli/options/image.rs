@@ -3,6 +3,7 @@
 use super::names::{self, BITS, Builder, Device, LANES, LAYERS, PPM, TRAVERSALS};
 use super::settings::SettingArgs;
 use super::values::{self, THREADS};
+use crate::cli::failure::Failure;
 use clap::value_parser;
 use spherule_render::film::Region;
 use spherule_render::image::{Depth, Format, PpmEncoding};
@@ -49,6 +50,21 @@ impl EncodingArgs {
         let typed = &self.layers;
         let all = typed.contains(&None);
         Layer::ALL.into_iter().filter(|layer| all || typed.contains(&Some(*layer))).collect()
+    }
+
+    /// Rejects layers for formats that cannot store them.
+    pub(in crate::cli) fn check_layers(
+        &self,
+        command: &str,
+        format: Format,
+    ) -> Result<(), Failure> {
+        if self.layers.is_empty() || format == Format::Exr {
+            return Ok(());
+        }
+        let message = format!(
+            "{format} files cannot store --layers; use an --output that ends in .exr, or --output-format exr"
+        );
+        Err(Failure::usage(command, message))
     }
 
     /// Returns whether a requested layer needs statistics of the render.

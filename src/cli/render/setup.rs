@@ -120,13 +120,7 @@ impl<'a> RenderSetup<'a> {
                            that ends in .png, .ppm or .exr";
             return Err(Failure::usage("render", message));
         }
-        if !args.encoding.layers.is_empty() && format != Format::Exr {
-            let message = format!(
-                "{format} files cannot store --layers; use an --output that ends in .exr, or --output-format \
-                 exr"
-            );
-            return Err(Failure::usage("render", message));
-        }
+        args.encoding.check_layers("render", format)?;
         let background = args.style.background();
         check_alpha(background == Some(Background::Transparent), format)?;
         let inside = matches!(&args.looks.color_bar, Some(BarPlace::Inside(_)));
