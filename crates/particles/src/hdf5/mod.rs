@@ -1,8 +1,11 @@
 //! Reads HDF5: trajectories of H5MD and of mdtraj, NetCDF 4 by the conventions of Amber, and snapshots of
 //! Gadget.
 //!
-//! No crate is used: those that read HDF5 without the C library are larger than the rest of this package, and
-//! map files into memory. This is what these programs write: all versions of the superblock and of object
+//! No crate is used. `hdf5-pure` 0.47 cannot read 11 chunked datasets of the tests' files (layout 5, trees of version 2)
+//! nor old groups with soft links, and takes 3.3 GB for a damaged file for which this takes 4 MB; `hdf5-reader` 0.12 has
+//! unsafe code, cannot read LZF, nor rows of enumerations, and takes 1.4 to 1.8 times the memory of this.
+//!
+//! It reads what these programs write: all versions of the superblock and of object
 //! headers, groups of both kinds, contiguous and chunked datasets under every index, deflate, shuffle, LZF and
 //! checksums, of numbers and texts. Frames are read at random, by the chunks that they are in.
 
