@@ -136,7 +136,7 @@ fn glass_shows_the_background_behind_it() {
 fn the_quartz_of_the_gallery_is_complete() {
     let path = folder().join("gallery/quartz.cif");
     let read = particles::read(&path, &ReadOptions::default()).expect("a crystal");
-    let (spheres, cell) = (read.spheres, read.cell.expect("a cell"));
+    let (spheres, cell) = (read.spheres, read.frame.cell.expect("a cell"));
     assert_eq!(spheres.len(), 9);
     // Every silicon has four oxygen neighbors at 1.60 to 1.62 angstrom, also across faces.
     for silicon in 0..3 {

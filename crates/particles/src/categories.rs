@@ -105,6 +105,8 @@ pub(crate) enum RowChange<'a> {
     Retain(&'a [bool]),
     /// Gathers rows: row `i` becomes the former row `rows[i]`.
     Pick(&'a [u32]),
+    /// Repeats all rows, so many times in all.
+    Repeat(usize),
     /// Keeps all rows, and frees unused capacity.
     Shrink,
 }
@@ -116,6 +118,7 @@ impl RowChange<'_> {
             Self::Pick(_) if column.is_empty() => {}
             Self::Pick(rows) => *column = rows.iter().map(|&row| column[row as usize]).collect(),
             Self::Retain(keep) => retain(column, keep),
+            Self::Repeat(count) => *column = column.repeat(count),
             Self::Shrink => column.shrink_to_fit(),
         }
     }

@@ -335,8 +335,8 @@ mod tests {
         own.set_shapes(axes, quaternions, false);
         assert_eq!(own.shapes.orientation, [DQuat::IDENTITY, DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0)]);
         assert!(own.warnings[0].starts_with("1 orientations"), "{:?}", own.warnings);
-        own.shapes.retain(&[false, true]);
-        own.shapes.repeat(2);
+        own.retain(&[false, true]);
+        own.repeat(2);
         assert_eq!(own.shapes.semi_axes, [DVec3::new(0.5, 1.0, 1.0); 2]);
         assert!(!own.shapes.is_sphere(1));
     }

@@ -3,7 +3,7 @@
 mod common;
 
 use common::file;
-use spherule_particles::{Columns, Frames, ParticleFrame, ReadOptions, read_frame};
+use spherule_particles::{Columns, Frames, ParticleFrame, ReadOptions, Trails, read_frame};
 
 fn wanted(names: &[&str]) -> ReadOptions {
     let wanted = names.iter().map(|&name| name.to_owned()).collect();
@@ -192,10 +192,11 @@ fn trails_end_where_the_number_of_particles_changes() {
 #[test]
 fn trails_follow_the_rows_of_their_particles() {
     let steps = vec![[vec![1.0, 2.0, 3.0], vec![4.0, 5.0, 6.0], vec![7.0, 8.0, 9.0]]];
-    let mut trails = spherule_particles::Trails { steps };
-    trails.retain(&[true, false, true]);
-    trails.repeat(2);
-    trails.scale(2.0);
-    let rows: Vec<[f64; 3]> = (0..4).flat_map(|row| trails.of(row)).map(|v| v.to_array()).collect();
+    let mut frame = ParticleFrame { trails: Trails { steps }, ..ParticleFrame::default() };
+    frame.retain(&[true, false, true]);
+    frame.repeat(2);
+    frame.trails.scale(2.0);
+    let rows: Vec<[f64; 3]> =
+        (0..4).flat_map(|row| frame.trails.of(row)).map(|v| v.to_array()).collect();
     assert_eq!(rows, [[2.0, 8.0, 14.0], [6.0, 12.0, 18.0], [2.0, 8.0, 14.0], [6.0, 12.0, 18.0]]);
 }

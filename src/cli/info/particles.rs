@@ -55,19 +55,19 @@ const SHOWN: usize = 12;
 impl ParticleInfo {
     pub(super) fn new(path: &Path, options: &ReadOptions, particles: &Particles) -> Self {
         let Orientation { up, reason, .. } = Orientation::of(particles);
-        let kinds = &particles.kinds;
+        let kinds = &particles.frame.kinds;
         let mut counts = vec![0; kinds.table.len()];
         (0..kinds.codes.len()).for_each(|row| counts[kinds.codes.code(row) as usize] += 1);
         let types = kinds.table.iter().zip(counts).filter(|(_, spheres)| *spheres > 0);
         Self {
-            format: particles.format.name(),
-            title: particles.title.clone(),
+            format: particles.frame.format.name(),
+            title: particles.frame.title.clone(),
             // Input that is not a file can be read only once.
             frames: path.is_file().then(|| count_frames(path, options).ok()).flatten(),
-            step: particles.step,
-            time: particles.time,
-            unit: (particles.unit != LengthUnit::Unknown).then(|| particles.unit.name()),
-            columns: particles.columns.clone(),
+            step: particles.frame.step,
+            time: particles.frame.time,
+            unit: (particles.frame.unit != LengthUnit::Unknown).then(|| particles.frame.unit.name()),
+            columns: particles.frame.columns.clone(),
             types: types
                 .map(|(kind, spheres)| TypeInfo {
                     name: kind.name.clone(),
@@ -75,7 +75,7 @@ impl ParticleInfo {
                     spheres,
                 })
                 .collect(),
-            cell: particles.cell.map(|cell| CellInfo {
+            cell: particles.frame.cell.map(|cell| CellInfo {
                 origin: cell.origin.to_array(),
                 vectors: cell.vectors.map(|vector| vector.to_array()),
                 periodic: cell.periodic,

@@ -32,7 +32,7 @@ impl RowInfo {
             row,
             position: particles.spheres.center(row).to_array(),
             radius: particles.spheres.radius[row],
-            kind: particles.kinds.kind(row).map(|kind| kind.name.clone()),
+            kind: particles.frame.kinds.kind(row).map(|kind| kind.name.clone()),
         };
         Self { first: (0..end).map(row).collect(), last: (start..all).map(row).collect() }
     }

@@ -15,7 +15,7 @@ use spherule_render::World;
 use spherule_render::compose::{self, CellRequest, Labels, Request, Staged, Subject, Value};
 use spherule_render::scene::particles::{
     self, ArrowSizes, Codes, Coloring, ColumnColors, FrameChoice, Kind, Kinds, Model, NumberColumn,
-    ParticleStyle, Particles, ReadOptions, ReadProgress, Role,
+    ParticleFrame, ParticleStyle, Particles, ReadOptions, ReadProgress, Role,
 };
 use spherule_render::scene::{Rgb, Scene, Spheres};
 use spherule_render::world::framing;
@@ -132,7 +132,8 @@ impl Base {
             Codes::Words(spheres.material.clone())
         };
         let kinds = Kinds { table, codes };
-        let particles = Particles { spheres, kinds, ..Particles::default() };
+        let frame = ParticleFrame { kinds, ..ParticleFrame::default() };
+        let particles = Particles { spheres, frame, ..Particles::default() };
         Self { particles, scene: Some(scene), frame: None, frames: None, more_columns: false }
     }
 
@@ -140,7 +141,7 @@ impl Base {
     fn facts(&self, setup: &RenderSetup) -> Facts {
         let own = other_columns(&self.particles);
         let own = own.filter(|name| self.more_columns || self.particles.can_color_by(name));
-        let has_types = !self.particles.kinds.codes.is_empty();
+        let has_types = !self.particles.frame.kinds.codes.is_empty();
         let default = USUAL.into_iter().filter(|name| *name != "type" || has_types);
         Facts {
             columns: own.chain(default).map(str::to_owned).collect(),
@@ -182,7 +183,8 @@ fn stage(
     let subject = Subject { path: Path::new(&*name), title: &title, frame: &frame };
     let staged = if let Some(scene) = scene {
         let legend = request.style.apply(subject.path, &mut particles)?;
-        let Particles { spheres, kinds, numbers, texts, .. } = particles;
+        let Particles { spheres, frame, .. } = particles;
+        let ParticleFrame { kinds, numbers, texts, .. } = frame;
         let scene = compose::Content::Scene(Box::new(Scene { spheres, ..scene }));
         let staged = compose::stage(&request, &subject, scene, None);
         let labels = Labels { kinds, numbers, texts };
@@ -362,9 +364,9 @@ fn restyled(
     particles: &mut Particles,
 ) -> ParticleStyle {
     let condition = content.condition();
-    if condition.is_some() && !particles.numbers.iter().any(|column| column.name == "id") {
+    if condition.is_some() && !particles.frame.numbers.iter().any(|column| column.name == "id") {
         let values = (0..particles.spheres.len()).map(|row| row as f64).collect();
-        particles.numbers.push(NumberColumn { name: "id".to_owned(), values });
+        particles.frame.numbers.push(NumberColumn { name: "id".to_owned(), values });
     }
     let select = condition.and_then(|text| text.parse().ok());
     let coloring = content
@@ -388,9 +390,9 @@ fn has_many_values(particles: &Particles) -> bool {
 /// Names of the columns other than positions, radii and types.
 fn other_columns(particles: &Particles) -> impl Iterator<Item = &str> {
     let shapes = [Role::X, Role::Y, Role::Z, Role::Radius, Role::Diameter, Role::Kind];
-    let roles = particles.roles.iter().filter(|(role, _)| shapes.contains(role));
+    let roles = particles.frame.roles.iter().filter(|(role, _)| shapes.contains(role));
     let roles: HashSet<&str> = roles.map(|(_, name)| name.as_str()).collect();
-    let own = particles.columns.iter().map(String::as_str);
+    let own = particles.frame.columns.iter().map(String::as_str);
     own.filter(move |name| !roles.contains(name) && !USUAL.contains(name))
 }
 

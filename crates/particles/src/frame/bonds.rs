@@ -102,12 +102,12 @@ impl Bonds {
         self.pick(&rows.collect::<Vec<u32>>());
     }
 
-    /// Changes the rows of the particles.
+    /// Changes the rows of the particles. Repeated ones get bonds by [`Bonds::replicate`], which knows the cell.
     pub(super) fn change(&mut self, change: RowChange) {
         match change {
             RowChange::Retain(keep) => self.retain(keep),
             RowChange::Pick(rows) => self.pick(rows),
-            RowChange::Shrink => {}
+            RowChange::Repeat(_) | RowChange::Shrink => {}
         }
     }
 

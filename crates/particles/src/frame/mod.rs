@@ -167,6 +167,11 @@ impl ParticleFrame {
         self.change(RowChange::Pick(rows));
     }
 
+    /// Repeats all rows, `count` times in all, but not the bonds ([`Bonds::replicate`]).
+    pub fn repeat(&mut self, count: usize) {
+        self.change(RowChange::Repeat(count));
+    }
+
     /// Frees the unused capacity of columns.
     pub fn shrink(&mut self) {
         self.change(RowChange::Shrink);

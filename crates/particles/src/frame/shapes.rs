@@ -29,11 +29,6 @@ impl Shapes {
         self.orientation.get(row).copied().unwrap_or(DQuat::IDENTITY)
     }
 
-    /// Keeps the rows for which `keep` is true.
-    pub fn retain(&mut self, keep: &[bool]) {
-        self.change(RowChange::Retain(keep));
-    }
-
     /// Changes the rows.
     pub(crate) fn change(&mut self, change: RowChange) {
         change.apply(&mut self.semi_axes);
@@ -46,11 +41,5 @@ impl Shapes {
             self.orientation = vec![DQuat::IDENTITY; self.semi_axes.len()];
         }
         self.orientation.iter_mut().for_each(|own| *own = (rotation * *own).normalize());
-    }
-
-    /// Repeats all rows, `count` times in all.
-    pub fn repeat(&mut self, count: usize) {
-        self.semi_axes = self.semi_axes.repeat(count);
-        self.orientation = self.orientation.repeat(count);
     }
 }

@@ -23,16 +23,6 @@ impl Trails {
         self.steps.iter().map(move |[x, y, z]| DVec3::new(x[row], y[row], z[row]))
     }
 
-    /// Keeps the rows for which `keep` is true.
-    pub fn retain(&mut self, keep: &[bool]) {
-        self.change(RowChange::Retain(keep));
-    }
-
-    /// Repeats all rows, `count` times in total.
-    pub fn repeat(&mut self, count: usize) {
-        self.columns().for_each(|column| *column = column.repeat(count));
-    }
-
     /// Multiplies all vectors by a factor.
     pub fn scale(&mut self, factor: f64) {
         self.columns().flatten().for_each(|value| *value *= factor);

@@ -177,12 +177,12 @@ impl Facts {
         Self {
             categories: legend.then(|| particles.categories(coloring)).flatten(),
             numeric: matches!(coloring, Coloring::Column(colors) if colors.is_numeric(particles)),
-            cell: particles.cell,
-            unit: symbol(particles.unit),
+            cell: particles.frame.cell,
+            unit: symbol(particles.frame.unit),
             header: Some(Header {
-                step: particles.step,
-                time: particles.time,
-                title: particles.title.clone(),
+                step: particles.frame.step,
+                time: particles.frame.time,
+                title: particles.frame.title.clone(),
                 values: particles.header_values(),
             }),
         }

@@ -274,19 +274,19 @@ fn of_particles(
     let legend = request.style.apply(path, &mut particles)?;
     let shows_cell = request.cell.show || request.style.draws_crystal(&particles);
     repeat(request.cell, path, &mut particles)?;
-    let cell = particles.cell;
+    let cell = particles.frame.cell;
     let focus = camera::point_in_focus(request, path, &particles)?;
     let mut rows = take_rows(&mut particles);
-    let ellipsoid_rows = rows.as_mut().map(|rows| take_ellipsoids(rows, &particles.shapes));
+    let ellipsoid_rows = rows.as_mut().map(|rows| take_ellipsoids(rows, &particles.frame.shapes));
     let facts = Facts::of(request, &particles);
     let shared = shared.and_then(|shared| shared.orientation);
     let orientation = shared.unwrap_or_else(|| request.orientation(&particles));
     let arrow_sizes = particles.arrows.sizes;
     let mut labels = Labels::default();
     if request.keeps_labels {
-        labels.kinds = std::mem::take(&mut particles.kinds);
-        labels.numbers = std::mem::take(&mut particles.numbers);
-        labels.texts = std::mem::take(&mut particles.texts);
+        labels.kinds = std::mem::take(&mut particles.frame.kinds);
+        labels.numbers = std::mem::take(&mut particles.frame.numbers);
+        labels.texts = std::mem::take(&mut particles.frame.texts);
     }
     let preset = request.preset.unwrap_or_default();
     let staged = Staged {
@@ -342,7 +342,7 @@ pub fn repeat(
     if let Some(copies) = request.copies {
         particles.replicate(copies).map_err(refused)?;
     }
-    if request.show && particles.cell.is_none() {
+    if request.show && particles.frame.cell.is_none() {
         return Err(FileError::whole_file(path, "has no simulation cell to draw"));
     }
     Ok(())
@@ -350,8 +350,8 @@ pub fn repeat(
 
 /// Takes the column [`ROWS`], if there is one.
 fn take_rows(particles: &mut Particles) -> Option<Vec<u32>> {
-    let own = particles.numbers.iter().position(|column| column.name == ROWS)?;
-    let values = particles.numbers.swap_remove(own).values;
+    let own = particles.frame.numbers.iter().position(|column| column.name == ROWS)?;
+    let values = particles.frame.numbers.swap_remove(own).values;
     Some(values.into_iter().map(|row| row as u32).collect())
 }
 

@@ -175,7 +175,7 @@ impl Survey {
 
 /// The common radius of particles before scaling, if it may have been guessed.
 fn guessed(particles: &Particles, options: &ReadOptions) -> Option<f64> {
-    let elements = particles.kinds.table.iter().any(|kind| kind.element.is_some());
+    let elements = particles.frame.kinds.table.iter().any(|kind| kind.element.is_some());
     let radius = particles.spheres.radius.first()?;
     // This has no effect for a file with radii.
     (options.radii == Radii::Auto && !elements).then_some(radius / options.radius_scale)

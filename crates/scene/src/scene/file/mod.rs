@@ -159,12 +159,15 @@ impl Scene {
         }
         if refused {
             let message = "glass and emitters have no opacity, and stay as they are";
-            particles.warnings.push(format!("{title}: {message}"));
+            particles.frame.warnings.push(format!("{title}: {message}"));
         }
         if !unknown.is_empty() {
             let known = TypeMaterial::ALL.map(|(name, _)| name).join(", ");
             let reason = format!("unknown materials, replaced by the default (known are {known})");
-            particles.warnings.push(format!("{title}: {}", clipped(listed(&reason, &unknown))));
+            particles
+                .frame
+                .warnings
+                .push(format!("{title}: {}", clipped(listed(&reason, &unknown))));
         }
         let materials = materials.into_rows();
         let sticks = particles.sticks(&materials, &rows);
@@ -179,7 +182,7 @@ impl Scene {
             ellipsoids,
             cones,
             materials,
-            warnings: particles.warnings,
+            warnings: particles.frame.warnings,
             ..Self::default()
         }
     }

@@ -79,7 +79,7 @@ fn read_file(
     };
     let path = existing(source, block, "path", &path)?;
     let mut particles = particles::read(&path, &options)?;
-    let others = Ellipsoids::BYTES.of(particles.shapes.semi_axes.len());
+    let others = Ellipsoids::BYTES.of(particles.frame.shapes.semi_axes.len());
     let added = Footprint { others, ..Footprint::of_columns(&particles.spheres, &[]) };
     check_capacity(&scene.spheres, &added, added.scene(), materials)
         .map_err(|message| block.error_at("path", &message))?;
@@ -97,7 +97,7 @@ fn read_file(
     let ellipsoids = particles.take_ellipsoids(materials.rows(), &rows, &path.to_string_lossy());
     scene.ellipsoids.append(ellipsoids, |row| row);
     scene.spheres.append(particles.spheres, &rows);
-    scene.warnings.extend(particles.warnings);
+    scene.warnings.extend(particles.frame.warnings);
     Ok(())
 }
 

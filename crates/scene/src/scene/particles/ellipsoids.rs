@@ -15,13 +15,13 @@ impl Particles {
         source: &str,
     ) -> Ellipsoids {
         let mut ellipsoids = Ellipsoids::default();
-        if self.shapes.is_empty() {
+        if self.frame.shapes.is_empty() {
             return ellipsoids;
         }
         let mut keep = vec![true; self.spheres.len()];
         let mut replaced = 0_u64;
         for (row, keep) in keep.iter_mut().enumerate() {
-            *keep = self.shapes.is_sphere(row);
+            *keep = self.frame.shapes.is_sphere(row);
             if *keep {
                 continue;
             }
@@ -31,8 +31,8 @@ impl Particles {
             replaced += u64::from(!is_solid);
             ellipsoids.push(
                 self.spheres.center(row),
-                self.shapes.semi_axes[row] * self.spheres.radius[row],
-                self.shapes.orientation_of(row),
+                self.frame.shapes.semi_axes[row] * self.spheres.radius[row],
+                self.frame.shapes.orientation_of(row),
                 if is_solid { own } else { 0 },
                 self.spheres.color_of(row),
             );
@@ -41,7 +41,7 @@ impl Particles {
             let warning = format!(
                 "{source}: {replaced} ellipsoids cannot be glass or emitters, and have another material"
             );
-            self.warnings.push(warning);
+            self.frame.warnings.push(warning);
         }
         self.retain(&keep);
         ellipsoids
@@ -62,7 +62,7 @@ mod tests {
             particles.spheres.push(DVec3::X * x, radius, 0, Rgb::X * x as f32);
         }
         let axes = DVec3::new(0.5, 1.0, 0.25);
-        particles.shapes = Shapes {
+        particles.frame.shapes = Shapes {
             semi_axes: vec![axes, DVec3::ONE, axes],
             orientation: vec![DQuat::IDENTITY, DQuat::IDENTITY, turned],
         };

@@ -75,7 +75,7 @@ impl Particles {
     pub(in crate::scene) fn sticks(&self, materials: &[NamedMaterial], rows: &[u32]) -> Sticks {
         let mut sticks = Sticks::default();
         let material = |sphere: usize| self.solid_material(sphere, materials, rows);
-        if !self.trails.is_empty() {
+        if !self.frame.trails.is_empty() {
             self.append_trails(material, &mut sticks);
         }
         for row in 0..self.arrows.vectors.len() {
@@ -83,13 +83,13 @@ impl Particles {
             let color = self.arrows.color.unwrap_or_else(|| self.spheres.color_of(row));
             sticks.push(arrow.shaft, arrow.radius, material(row), [color; 2]);
         }
-        let Some(bonds) = self.bonds.as_ref().filter(|_| self.stick_radius > 0.0) else {
+        let Some(bonds) = self.frame.bonds.as_ref().filter(|_| self.stick_radius > 0.0) else {
             return sticks;
         };
         for bond in 0..bonds.len() {
             let ends = [bonds.first[bond], bonds.second[bond]].map(|row| row as usize);
             let at = ends.map(|row| self.spheres.center(row));
-            let along = bonds.vector(bond, at, self.cell.as_ref());
+            let along = bonds.vector(bond, at, self.frame.cell.as_ref());
             let (of, colors) = (ends.map(material), ends.map(|row| self.spheres.color_of(row)));
             if bonds.shift_of(bond) == [0; 3] && of[0] == of[1] {
                 sticks.push(at, self.stick_radius, of[0], colors);
@@ -129,7 +129,7 @@ impl Particles {
             let center = self.spheres.center(row);
             let (radius, color) = (self.spheres.radius[row], self.spheres.color_of(row));
             let mut last = center;
-            for place in self.trails.of(row).map(|vector| center + vector) {
+            for place in self.frame.trails.of(row).map(|vector| center + vector) {
                 if !place.is_finite() {
                     break;
                 }
@@ -150,20 +150,18 @@ mod tests {
 
     /// Three particles in a row, the last of which is bonded to the first over the cell.
     fn particles() -> Particles {
-        let mut particles = Particles {
-            bonds: Some(Bonds {
-                first: vec![0, 0],
-                second: vec![1, 2],
-                shift: vec![[0; 3], [-1, 0, 0]],
-                ..Bonds::default()
-            }),
-            cell: Some(Cell {
-                origin: DVec3::ZERO,
-                vectors: [DVec3::X * 10.0, DVec3::Y * 10.0, DVec3::Z * 10.0],
-                periodic: [true; 3],
-            }),
-            ..Particles::default()
-        };
+        let mut particles = Particles::default();
+        particles.frame.bonds = Some(Bonds {
+            first: vec![0, 0],
+            second: vec![1, 2],
+            shift: vec![[0; 3], [-1, 0, 0]],
+            ..Bonds::default()
+        });
+        particles.frame.cell = Some(Cell {
+            origin: DVec3::ZERO,
+            vectors: [DVec3::X * 10.0, DVec3::Y * 10.0, DVec3::Z * 10.0],
+            periodic: [true; 3],
+        });
         for (x, color) in [(1.0, Rgb::X), (3.0, Rgb::Y), (9.0, Rgb::Z)] {
             particles.spheres.push(DVec3::new(x, 5.0, 5.0), 0.8, 0, color);
         }
@@ -195,9 +193,9 @@ mod tests {
     #[test]
     fn trails_become_chains_of_sticks() {
         let mut own = particles();
-        own.bonds = None;
+        own.frame.bonds = None;
         // The second particle stands still in the last frame, and the third has no known position before that.
-        own.trails.steps = vec![
+        own.frame.trails.steps = vec![
             [vec![-1.0, 0.0, 1.0], vec![0.0; 3], vec![0.0; 3]],
             [vec![-3.0, 2.0, f64::NAN], vec![1.0; 3], vec![0.0; 3]],
         ];

@@ -99,11 +99,11 @@ impl fmt::Display for UpReason {
 impl Orientation {
     /// Finds the orientation of particles.
     pub fn of(particles: &Particles) -> Self {
-        let (spheres, cell) = (&particles.spheres, particles.cell.as_ref());
+        let (spheres, cell) = (&particles.spheres, particles.frame.cell.as_ref());
         let molecules = matches!(
-            particles.format,
+            particles.frame.format,
             Format::Pdb | Format::MmCif | Format::Pqr | Format::Sdf | Format::Mol2
-        ) || particles.format == Format::Xyz && cell.is_none();
+        ) || particles.frame.format == Format::Xyz && cell.is_none();
         let cell = cell.filter(|_| !molecules);
         let radius = median_radius(spheres);
         let gaps = cell.map(|cell| gaps(spheres, cell));
@@ -117,7 +117,7 @@ impl Orientation {
         let (up, reason) = match found().filter(|_| !molecules) {
             Some(found) => found,
             None if molecules => (Axis::Y, UpReason::Molecule),
-            None => (Axis::Z, UpReason::Convention(particles.format)),
+            None => (Axis::Z, UpReason::Convention(particles.frame.format)),
         };
         let full = cell.is_some_and(|cell| is_full(spheres, cell, gaps));
         let projection =
@@ -316,7 +316,8 @@ mod tests {
     use crate::scene::Rgb;
 
     fn particles(format: Format, centers: impl IntoIterator<Item = DVec3>) -> Particles {
-        let mut particles = Particles { format, ..Particles::default() };
+        let mut particles = Particles::default();
+        particles.frame.format = format;
         for center in centers {
             particles.spheres.push(center, 0.5, 0, Rgb::ONE);
         }
@@ -392,9 +393,9 @@ mod tests {
     #[test]
     fn slabs_stand_on_their_periodic_plane() {
         let mut slab = particles(Format::Xyz, lattice([6, 3, 6]));
-        slab.cell = Some(cell(DVec3::new(6.0, 20.0, 6.0), [true, false, true]));
+        slab.frame.cell = Some(cell(DVec3::new(6.0, 20.0, 6.0), [true, false, true]));
         assert_eq!(found(&slab), (Axis::Y, UpReason::Slab));
-        slab.cell = Some(cell(DVec3::new(6.0, 20.0, 6.0), [true; 3]));
+        slab.frame.cell = Some(cell(DVec3::new(6.0, 20.0, 6.0), [true; 3]));
         assert_eq!(found(&slab), (Axis::Y, UpReason::Vacuum));
         assert_eq!(Orientation::of(&slab).projection, Camera::LONG_LENS);
         // Wrapped around the end of the cell, it is the same slab.
@@ -406,15 +407,15 @@ mod tests {
     fn full_periodic_cells_are_seen_in_parallel_projection() {
         let parallel = Projection::Orthographic { height: None };
         let mut crystal = particles(Format::Cif, lattice([6, 6, 6]));
-        crystal.cell = Some(cell(DVec3::splat(6.0), [true; 3]));
+        crystal.frame.cell = Some(cell(DVec3::splat(6.0), [true; 3]));
         let orientation = Orientation::of(&crystal);
         assert_eq!((orientation.up, orientation.projection), (Axis::Z, parallel));
-        crystal.cell = Some(cell(DVec3::splat(6.0), [true, false, false]));
+        crystal.frame.cell = Some(cell(DVec3::splat(6.0), [true, false, false]));
         assert_eq!(Orientation::of(&crystal).projection, Camera::LONG_LENS);
-        crystal.cell = Some(cell(DVec3::splat(13.0), [true; 3]));
+        crystal.frame.cell = Some(cell(DVec3::splat(13.0), [true; 3]));
         assert_eq!(Orientation::of(&crystal).projection, Camera::LONG_LENS);
         let mut small = particles(Format::Cif, [DVec3::ZERO, DVec3::splat(0.5)]);
-        small.cell = Some(cell(DVec3::ONE, [true; 3]));
+        small.frame.cell = Some(cell(DVec3::ONE, [true; 3]));
         assert_eq!(Orientation::of(&small).projection, parallel);
     }
 

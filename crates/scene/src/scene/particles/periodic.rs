@@ -41,12 +41,12 @@ impl Particles {
     /// # Errors
     /// There is no cell, or none of its edges is periodic.
     pub fn wrap(&mut self) -> Result<(), PeriodicError> {
-        let cell = self.cell.ok_or(PeriodicError::NoCell("wrap"))?;
+        let cell = self.frame.cell.ok_or(PeriodicError::NoCell("wrap"))?;
         if cell.periodic == [false; 3] {
             return Err(PeriodicError::NotPeriodic);
         }
         let inverse = cell.matrix().inverse();
-        let mut moves = vec![[0; 3]; self.bonds.as_ref().map_or(0, |_| self.spheres.len())];
+        let mut moves = vec![[0; 3]; self.frame.bonds.as_ref().map_or(0, |_| self.spheres.len())];
         let spheres = &mut self.spheres;
         for row in 0..spheres.len() {
             let center = spheres.center(row);
@@ -58,7 +58,7 @@ impl Particles {
                 *edges_of_row = (cells * DVec3::from(edges)).to_array().map(|edges| edges as i32);
             }
         }
-        if let Some(bonds) = &mut self.bonds {
+        if let Some(bonds) = &mut self.frame.bonds {
             bonds.move_particles(|row| moves[row]);
         }
         Ok(())
@@ -71,7 +71,7 @@ impl Particles {
     /// There is no cell, an edge with several copies is not periodic, or there would be too many
     /// spheres for a scene or for memory; then nothing has changed.
     pub fn replicate(&mut self, copies: [u32; 3]) -> Result<(), PeriodicError> {
-        let cell = self.cell.ok_or(PeriodicError::NoCell("replicate"))?;
+        let cell = self.frame.cell.ok_or(PeriodicError::NoCell("replicate"))?;
         let count = self.check_copies(&cell, copies)?;
         if count == 1 {
             return Ok(());
@@ -86,15 +86,13 @@ impl Particles {
         spheres.radius = spheres.radius.repeat(count);
         spheres.material = spheres.material.repeat(count);
         spheres.color = spheres.color.repeat(count);
-        self.repeat_columns(count);
-        self.shapes.repeat(count);
-        self.trails.repeat(count);
+        self.frame.repeat(count);
         self.arrows.vectors = self.arrows.vectors.repeat(count);
-        if let Some(bonds) = &mut self.bonds {
+        if let Some(bonds) = &mut self.frame.bonds {
             bonds.replicate(self.spheres.len() / count, copies);
         }
         let vectors = std::array::from_fn(|edge| cell.vectors[edge] * f64::from(copies[edge]));
-        self.cell = Some(Cell { vectors, ..cell });
+        self.frame.cell = Some(Cell { vectors, ..cell });
         Ok(())
     }
 
@@ -124,30 +122,17 @@ impl Particles {
     /// Returns the bytes of a row in all columns.
     fn row_bytes(&self) -> u64 {
         let spheres = &self.spheres;
-        let texts = self.texts.iter().map(|column| &column.codes);
-        let codes = texts.chain([&self.kinds.codes]).filter(|codes| !codes.is_empty());
+        let texts = self.frame.texts.iter().map(|column| &column.codes);
+        let codes = texts.chain([&self.frame.kinds.codes]).filter(|codes| !codes.is_empty());
         let codes: usize = codes.map(Codes::width).sum();
-        let numbers = size_of::<f64>() * (self.numbers.len() + 3 * self.trails.steps.len());
+        let numbers =
+            size_of::<f64>() * (self.frame.numbers.len() + 3 * self.frame.trails.steps.len());
         let arrows = if self.arrows.vectors.is_empty() { 0 } else { size_of::<DVec3>() };
-        let shapes = if self.shapes.is_empty() { 0 } else { size_of::<(DVec3, DQuat)>() };
+        let shapes = if self.frame.shapes.is_empty() { 0 } else { size_of::<(DVec3, DQuat)>() };
         // Bonds are sorted beside their columns; they are spread over the particles.
-        let bonds = self.bonds.as_ref().map_or(0, Bonds::len) * 3 * size_of::<[u32; 3]>();
+        let bonds = self.frame.bonds.as_ref().map_or(0, Bonds::len) * 3 * size_of::<[u32; 3]>();
         let bonds = bonds.div_ceil(self.spheres.len().max(1));
         spheres.row_bytes() + (numbers + arrows + shapes + codes + bonds) as u64
-    }
-
-    fn repeat_columns(&mut self, count: usize) {
-        for column in &mut self.numbers {
-            column.values = column.values.repeat(count);
-        }
-        let texts = self.texts.iter_mut().map(|column| &mut column.codes);
-        for codes in texts.chain([&mut self.kinds.codes]) {
-            match codes {
-                Codes::Bytes(codes) => *codes = codes.repeat(count),
-                Codes::Shorts(codes) => *codes = codes.repeat(count),
-                Codes::Words(codes) => *codes = codes.repeat(count),
-            }
-        }
     }
 }
 
@@ -183,14 +168,15 @@ mod tests {
     }
 
     fn particles() -> Particles {
-        let mut particles = Particles { cell: Some(tilted()), ..Particles::default() };
+        let mut particles = Particles::default();
+        particles.frame.cell = Some(tilted());
         for i in 0..40 {
             let i = f64::from(i);
             let center = DVec3::new((i * 12.9).sin(), (i * 78.2).sin(), (i * 37.7).cos()) * 30.0;
             particles.spheres.push(center, 0.5 + i, 0, Rgb::ONE);
         }
         let values = particles.spheres.radius.clone();
-        particles.numbers.push(NumberColumn { name: "q".to_owned(), values });
+        particles.frame.numbers.push(NumberColumn { name: "q".to_owned(), values });
         particles
     }
 
@@ -220,9 +206,9 @@ mod tests {
             let distance = after.spheres.center(row) - before.spheres.center(old) - shift;
             assert!(distance.length() < 1e-12);
             assert_eq!(after.spheres.radius[row], before.spheres.radius[old]);
-            assert_eq!(after.numbers[0].values[row], before.numbers[0].values[old]);
+            assert_eq!(after.frame.numbers[0].values[row], before.frame.numbers[0].values[old]);
         }
-        let cell = after.cell.unwrap();
+        let cell = after.frame.cell.unwrap();
         assert_eq!(
             cell.vectors,
             [tilted().vectors[0] * 2.0, DVec3::new(3.0, 9.0, 0.0), tilted().vectors[2]]
@@ -242,19 +228,19 @@ mod tests {
         };
         let before: Vec<DVec3> =
             (0..39).map(|bond| vector(&particles, &bonds, bond, &cell)).collect();
-        particles.bonds = Some(bonds);
+        particles.frame.bonds = Some(bonds);
         particles.wrap().unwrap();
-        let wrapped = particles.bonds.clone().unwrap();
+        let wrapped = particles.frame.bonds.clone().unwrap();
         for (bond, before) in before.iter().enumerate() {
             assert!((vector(&particles, &wrapped, bond, &cell) - *before).length() < 1e-9);
         }
         particles.replicate([3, 2, 1]).unwrap();
-        let copies = particles.bonds.clone().unwrap();
+        let copies = particles.frame.bonds.clone().unwrap();
         assert_eq!(copies.len(), 6 * 39);
         for bond in 0..copies.len() {
             let one = copies.first[bond].min(copies.second[bond]) as usize % 40;
             let other = copies.first[bond].max(copies.second[bond]) as usize % 40;
-            let vector = vector(&particles, &copies, bond, &particles.cell.unwrap());
+            let vector = vector(&particles, &copies, bond, &particles.frame.cell.unwrap());
             let expected = before[one.min(other)];
             let same = (vector - expected).length().min((vector + expected).length());
             assert!(same < 1e-9, "{bond}");
@@ -286,7 +272,7 @@ mod tests {
     #[test]
     fn copies_along_the_third_edge_are_shifted_too() {
         let (before, mut after) = (particles(), particles());
-        after.cell = Some(Cell { periodic: [true; 3], ..tilted() });
+        after.frame.cell = Some(Cell { periodic: [true; 3], ..tilted() });
         after.replicate([1, 2, 2]).unwrap();
         let [_, b, c] = tilted().vectors;
         for (copy, shift) in [DVec3::ZERO, b, c, b + c].into_iter().enumerate() {
@@ -300,15 +286,15 @@ mod tests {
     fn rows_take_the_bytes_of_their_columns() {
         let mut particles = particles();
         let plain = particles.row_bytes();
-        let column = particles.numbers[0].clone();
-        particles.numbers.extend([column.clone(), column]);
+        let column = particles.frame.numbers[0].clone();
+        particles.frame.numbers.extend([column.clone(), column]);
         assert_eq!(particles.row_bytes(), plain + 16);
-        particles.kinds.codes = Codes::Shorts(vec![0; 40]);
+        particles.frame.kinds.codes = Codes::Shorts(vec![0; 40]);
         assert_eq!(particles.row_bytes(), plain + 18);
         let bytes = |particles: &Particles| {
             let numbers =
-                particles.numbers.iter().map(|column| column.values.len() * 8).sum::<usize>();
-            numbers + particles.kinds.codes.len() * 2
+                particles.frame.numbers.iter().map(|column| column.values.len() * 8).sum::<usize>();
+            numbers + particles.frame.kinds.codes.len() * 2
         };
         assert_eq!(
             (particles.row_bytes() - particles.spheres.row_bytes()) * 40,
@@ -327,9 +313,9 @@ mod tests {
         let memory = particles.replicate([100_000, 1000, 1]);
         assert!(matches!(memory, Err(PeriodicError::Memory(..))), "{memory:?}");
         assert_eq!(particles, before);
-        particles.cell = Some(Cell { periodic: [false; 3], ..tilted() });
+        particles.frame.cell = Some(Cell { periodic: [false; 3], ..tilted() });
         assert_eq!(particles.wrap(), Err(PeriodicError::NotPeriodic));
-        particles.cell = None;
+        particles.frame.cell = None;
         assert_eq!(particles.wrap(), Err(PeriodicError::NoCell("wrap")));
         assert_eq!(particles.replicate([1; 3]), Err(PeriodicError::NoCell("replicate")));
     }

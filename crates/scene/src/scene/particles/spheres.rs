@@ -2,14 +2,11 @@
 
 use super::radii::{FoundRadii, half_spacing, radii};
 use super::style::{Arrows, Column, ElementColors, ID, INDEX, TypeMaterial};
-use super::{Bonds, Cell, LengthUnit, NumberColumn, ParticleFrame, Shapes, Trails};
-use super::{Format, ReadOptions, Role};
-use super::{Kinds, TextColumn};
+use super::{Cell, ParticleFrame, ReadOptions, TextColumn};
 use crate::color::category;
 use crate::memory;
 use crate::scene::{FileError, NamedMaterial, Rgb, Spheres};
-use glam::DMat3;
-use spherule_particles::internals::{clipped, listed, pairs, retain};
+use spherule_particles::internals::{clipped, listed, pairs};
 use std::path::Path;
 
 /// The contents of a particle file, as spheres.
@@ -17,50 +14,20 @@ use std::path::Path;
 pub struct Particles {
     /// The spheres; materials are rows of `material_names`.
     pub spheres: Spheres,
+    /// The frame, without what `spheres` has: positions, radii, colors and materials, whose columns are empty. Other
+    /// columns have a row for each sphere. The cell and trails are scaled like positions, the radius of an ellipsoid is that
+    /// of the sphere around it, and each warning begins with the name of the file.
+    pub frame: ParticleFrame,
     /// Names of materials in the file; an empty name means none.
     pub material_names: Vec<String>,
     /// Opacities by row of `material_names`, 0 to 1; `None`, or no row, for that of the material.
     pub opacities: Vec<Option<f64>>,
-    /// Types of the spheres, if the file has types.
-    pub kinds: Kinds,
-    /// Columns of numbers that were asked for, one row per sphere.
-    pub numbers: Vec<NumberColumn>,
-    /// Columns of texts that were asked for, one row per sphere.
-    pub texts: Vec<TextColumn>,
-    /// Bonds between the spheres, if they were asked for ([`ReadOptions::bonds`]) and there are any.
-    pub bonds: Option<Bonds>,
     /// Radius of the sticks that are drawn for bonds ([`Model`](super::Model)); 0: none are drawn.
     pub stick_radius: f64,
-    /// Shapes of the particles that are ellipsoids, and not the spheres around them that `spheres` has.
-    pub shapes: Shapes,
-    /// Earlier positions of the spheres, which are drawn as sticks; empty if they were not asked for
-    /// ([`ReadOptions::trail`]).
-    pub trails: Trails,
     /// Arrows for vectors, if they were asked for ([`ParticleStyle::arrows`](super::ParticleStyle::arrows)).
     pub arrows: Arrows,
-    /// The rotation of the frame since it was read, by which vectors in `numbers` have to be turned
-    /// ([`ReadOptions::align`]).
-    pub rotation: DMat3,
-    /// The cell of the simulation, scaled like positions.
-    pub cell: Option<Cell>,
-    /// Format of the file.
-    pub format: Format,
-    /// Names of all columns of the file that can be asked for, whether they were read or not.
-    pub columns: Vec<String>,
-    /// The columns that positions, radii, types, colors and materials were read from.
-    pub roles: Vec<(Role, String)>,
     /// Chosen materials, by names in `material_names`; the others are defined by the scene.
     pub materials: Vec<NamedMaterial>,
-    /// The file's title or comment; empty if it has none.
-    pub title: String,
-    /// Step of the simulation, if the file has it.
-    pub step: Option<i64>,
-    /// Time of the simulation in the file's own unit, if the file has it.
-    pub time: Option<f64>,
-    /// Unit of length in the file.
-    pub unit: LengthUnit,
-    /// Warnings about dropped rows and assumptions.
-    pub warnings: Vec<String>,
 }
 
 impl Particles {
@@ -80,7 +47,7 @@ impl Particles {
 
     /// Returns the `key=value` pairs of the title, as extended XYZ has them.
     pub fn header_values(&self) -> Vec<(String, String)> {
-        pairs(&self.title)
+        pairs(&self.frame.title)
     }
 
     /// Returns the material of a row of `material_names`: one that was chosen, or one that the file
@@ -100,12 +67,7 @@ impl Particles {
     /// Keeps the rows for which `keep` is true.
     pub(super) fn retain(&mut self, keep: &[bool]) {
         self.spheres.retain(keep);
-        self.numbers.iter_mut().for_each(|column| retain(&mut column.values, keep));
-        let texts = self.texts.iter_mut().map(|column| &mut column.codes);
-        texts.chain([&mut self.kinds.codes]).for_each(|codes| codes.retain(keep));
-        self.bonds.iter_mut().for_each(|bonds| bonds.retain(keep));
-        self.shapes.retain(keep);
-        self.trails.retain(keep);
+        self.frame.retain(keep);
         self.arrows.retain(keep);
     }
 }
@@ -150,42 +112,23 @@ pub(super) fn spheres(
     }
     let color = colors(&mut frame);
     let material = material_rows(&frame.materials);
-    let cell = frame.cell.map(|cell| Cell {
+    frame.cell = frame.cell.map(|cell| Cell {
         origin: cell.origin * options.scale,
         vectors: cell.vectors.map(|vector| vector * options.scale),
         ..cell
     });
-    Ok(Particles {
-        spheres: Spheres {
-            x: frame.x,
-            y: frame.y,
-            z: frame.z,
-            radius: frame.radius,
-            material,
-            color,
-        },
-        material_names: material_names(frame.materials),
-        opacities: Vec::new(),
-        kinds: frame.kinds,
-        numbers: frame.numbers,
-        texts: frame.texts,
-        bonds: frame.bonds,
-        stick_radius: 0.0,
-        shapes: frame.shapes,
-        trails: frame.trails,
-        arrows: Arrows::default(),
-        rotation: frame.rotation,
-        cell,
-        format: frame.format,
-        columns: frame.columns,
-        roles: frame.roles,
-        materials: Vec::new(),
-        title: frame.title,
-        step: frame.step,
-        time: frame.time,
-        unit: frame.unit,
-        warnings: warnings.list,
-    })
+    let take = std::mem::take::<Vec<f64>>;
+    let spheres = Spheres {
+        x: take(&mut frame.x),
+        y: take(&mut frame.y),
+        z: take(&mut frame.z),
+        radius: take(&mut frame.radius),
+        material,
+        color,
+    };
+    let material_names = material_names(std::mem::take(&mut frame.materials));
+    frame.warnings = warnings.list;
+    Ok(Particles { spheres, frame, material_names, ..Particles::default() })
 }
 
 /// Returns the bytes of the columns that spheres have in addition to the frame's.

@@ -123,12 +123,15 @@ impl Selection {
         let mut particles = Particles {
             spheres: Spheres { x, y, z, radius, ..Spheres::default() },
             material_names: vec![String::new()],
-            kinds: frame.kinds.clone(),
-            numbers: frame.numbers.clone(),
-            texts: frame.texts.clone(),
-            cell: frame.cell,
-            columns: frame.columns.clone(),
-            roles: frame.roles.clone(),
+            frame: ParticleFrame {
+                kinds: frame.kinds.clone(),
+                numbers: frame.numbers.clone(),
+                texts: frame.texts.clone(),
+                cell: frame.cell,
+                columns: frame.columns.clone(),
+                roles: frame.roles.clone(),
+                ..ParticleFrame::default()
+            },
             ..Particles::default()
         };
         add_numbers(&mut particles, &self.columns());

@@ -17,7 +17,7 @@ pub(super) fn within(
 ) -> Result<Vec<bool>, String> {
     let spheres = &particles.spheres;
     let axes = [&spheres.x[..], &spheres.y, &spheres.z];
-    let points = Points { axes, cell: particles.cell.as_ref() };
+    let points = Points { axes, cell: particles.frame.cell.as_ref() };
     let rows: Vec<u32> = (0..of.len()).filter(|&row| of[row]).map(|row| row as u32).collect();
     if rows.is_empty() {
         return Ok(vec![false; of.len()]);

@@ -22,8 +22,8 @@ fn select(content: &str, condition: &str) -> Result<Vec<f64>, String> {
         Some(place) => format!("{}: {}", &place.source_text[place.span], error.message),
         None => format!("{} {}", error.message, error.help.unwrap_or_default()),
     })?;
-    assert_eq!(particles.kinds.codes.len(), particles.spheres.len());
-    if let Some(ids) = particles.numbers.iter().find(|column| column.name == "id") {
+    assert_eq!(particles.frame.kinds.codes.len(), particles.spheres.len());
+    if let Some(ids) = particles.frame.numbers.iter().find(|column| column.name == "id") {
         return Ok(ids.values.clone());
     }
     Ok(particles.spheres.x.iter().map(|x| x + 1.0).collect())

@@ -188,7 +188,7 @@ fn has_name(
 
 /// Returns the rows of hydrogens: by element or, if no element is known, by name.
 fn hydrogen(particles: &Particles) -> Result<Vec<bool>, String> {
-    let kinds = &particles.kinds;
+    let kinds = &particles.frame.kinds;
     let is_hydrogen = |element: spherule_particles::Element| element.number() == 1;
     let codes: &Codes = &kinds.codes;
     if !codes.is_empty() && kinds.table.iter().any(|kind| kind.element.is_some()) {

@@ -118,7 +118,7 @@ impl ArrowStyle {
         let lengths: Vec<f64> =
             vectors.iter().map(|v| v.length()).filter(|&v| v > 0.0 && v.is_finite()).collect();
         let Some(vector) = median(&lengths) else {
-            particles.warnings.push(format!(
+            particles.frame.warnings.push(format!(
                 "{}: no arrows, as all vectors of {} are 0 or missing",
                 path.display(),
                 self.columns.0.join(", ")
@@ -155,7 +155,7 @@ impl ArrowStyle {
         };
         let [x, y, z] = &self.columns.0;
         let (x, y, z) = (column(x)?, column(y)?, column(z)?);
-        let vector = |row: usize| particles.rotation * DVec3::new(x[row], y[row], z[row]);
+        let vector = |row: usize| particles.frame.rotation * DVec3::new(x[row], y[row], z[row]);
         Ok((0..particles.spheres.len()).map(vector).collect())
     }
 }

@@ -31,7 +31,7 @@ impl Particles {
     /// column that particles are colored by, or else of their types. `None` if colors stand for numbers
     /// or for nothing, as those of a file that differ within a type.
     pub fn categories(&self, coloring: &Coloring) -> Option<Vec<Category>> {
-        let kinds = &self.kinds;
+        let kinds = &self.frame.kinds;
         if let Coloring::Column(colors) = coloring {
             let Column::Texts { names, codes } = Column::find(self, &colors.column)? else {
                 return None;

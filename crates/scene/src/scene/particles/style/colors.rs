@@ -31,7 +31,7 @@ impl ElementColors {
     }
 
     pub(super) fn apply(self, path: &Path, particles: &mut Particles) -> Result<(), FileError> {
-        let kinds = &particles.kinds;
+        let kinds = &particles.frame.kinds;
         if kinds.table.iter().all(|kind| kind.element.is_none()) {
             let message = "cannot color by element: no particle has an element";
             let help = "name the column of elements, as in type=NAME, or color by a column";
@@ -80,7 +80,7 @@ impl ColumnColors {
         let (colors, legend, missing) = match &column {
             Column::Numbers(values) => match self.scale(values) {
                 Ok(scale) => {
-                    let legend = Legend { scale, label: self.label(particles.unit) };
+                    let legend = Legend { scale, label: self.label(particles.frame.unit) };
                     (scale.colors(values), Some(legend), missing(values))
                 }
                 Err(RangeError::Empty | RangeError::NonePositive) if allow_empty => {
@@ -99,7 +99,7 @@ impl ColumnColors {
             let warning = format!(
                 "{path}: {missing} particles have no value of `{name}` and are drawn in gray"
             );
-            particles.warnings.push(warning);
+            particles.frame.warnings.push(warning);
         }
         Ok(legend)
     }

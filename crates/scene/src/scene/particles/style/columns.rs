@@ -48,14 +48,15 @@ impl<'p> Column<'p> {
     }
 
     fn of(particles: &'p Particles, named: impl Fn(&str) -> bool) -> Option<Self> {
-        if let Some(column) = particles.numbers.iter().find(|column| named(&column.name)) {
+        if let Some(column) = particles.frame.numbers.iter().find(|column| named(&column.name)) {
             return Some(Self::Numbers(Cow::Borrowed(&column.values)));
         }
-        if let Some(column) = particles.texts.iter().find(|column| named(&column.name)) {
+        if let Some(column) = particles.frame.texts.iter().find(|column| named(&column.name)) {
             let names = column.names.iter().map(String::as_str).collect();
             return Some(Self::Texts { names, codes: Cow::Borrowed(&column.codes) });
         }
-        let role = particles.roles.iter().find(|(_, name)| named(name)).map(|(role, _)| *role);
+        let role =
+            particles.frame.roles.iter().find(|(_, name)| named(name)).map(|(role, _)| *role);
         let common = || COMMON.iter().find(|(name, _)| named(name)).map(|(_, role)| *role);
         match role.or_else(common) {
             Some(role) => Self::of_role(particles, role),
@@ -88,7 +89,7 @@ impl<'p> Column<'p> {
     }
 
     fn of_kinds(particles: &'p Particles, name: impl Fn(&'p Kind) -> &'p str) -> Option<Self> {
-        let kinds = &particles.kinds;
+        let kinds = &particles.frame.kinds;
         let names = kinds.table.iter().map(name).collect();
         let codes = Cow::Borrowed(&kinds.codes);
         (!kinds.codes.is_empty()).then_some(Self::Texts { names, codes })
@@ -118,8 +119,8 @@ impl<'p> Column<'p> {
 
 /// Returns the names of all columns.
 fn names(particles: &Particles) -> Vec<&str> {
-    let mut names: Vec<&str> = particles.columns.iter().map(String::as_str).collect();
-    let has_kinds = !particles.kinds.codes.is_empty();
+    let mut names: Vec<&str> = particles.frame.columns.iter().map(String::as_str).collect();
+    let has_kinds = !particles.frame.kinds.codes.is_empty();
     let common = COMMON.iter().filter(|(_, role)| has_kinds || *role != Role::Kind);
     let common = common.map(|(name, _)| *name).chain([ID, INDEX]);
     for name in common.chain(has_kinds.then_some(ELEMENT)) {

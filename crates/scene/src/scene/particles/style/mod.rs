@@ -90,7 +90,7 @@ impl ParticleStyle {
     /// Returns whether particles are drawn as a crystal because nothing else is asked for: as balls and sticks in their
     /// cell.
     pub fn draws_crystal(&self, particles: &Particles) -> bool {
-        self.bond_source() == BondSource::OfCrystals && particles.bonds.is_some()
+        self.bond_source() == BondSource::OfCrystals && particles.frame.bonds.is_some()
     }
 
     /// Returns the columns that this style names.
@@ -131,7 +131,7 @@ impl ParticleStyle {
         }
         if particles.spheres.is_empty() {
             return Ok(match &self.coloring {
-                Coloring::Column(colors) => colors.legend_of_ends(particles.unit),
+                Coloring::Column(colors) => colors.legend_of_ends(particles.frame.unit),
                 Coloring::Usual | Coloring::Elements(_) => None,
             });
         }
@@ -143,10 +143,10 @@ impl ParticleStyle {
         if let Some(arrows) = &self.arrows {
             arrows.apply(path, particles)?;
         }
-        let has_bonds = self.bond_source() != BondSource::None && particles.bonds.is_some();
+        let has_bonds = self.bond_source() != BondSource::None && particles.frame.bonds.is_some();
         let usual = if has_bonds { Model::BallAndStick } else { Model::SpaceFilling };
         self.model.unwrap_or(usual).apply(particles, self.bond_radius);
-        let table = &particles.kinds.table;
+        let table = &particles.frame.kinds.table;
         let known =
             |style: &&TypeStyle| !self.allow_empty || style.check_known(path, table).is_ok();
         let types: Vec<&TypeStyle> = self.types.iter().filter(known).collect();
@@ -180,7 +180,7 @@ pub(super) fn add_numbers(particles: &mut Particles, names: &[String]) {
         };
         if names.iter().any(names_column) && Column::find(particles, own).is_none() {
             let values = (0..particles.spheres.len()).map(|row| row as f64).collect();
-            particles.numbers.push(NumberColumn { name: own.to_owned(), values });
+            particles.frame.numbers.push(NumberColumn { name: own.to_owned(), values });
         }
     }
 }

@@ -82,7 +82,11 @@ fn missing_columns_and_values_are_reported() {
     let (particles, _) = apply(dust, &colored(by("q"))).expect("colors");
     assert_eq!(particles.spheres.color[1], srgb(0x80_80_80));
     assert!(
-        particles.warnings.iter().any(|text| text.contains("1 particles have no value of `q`"))
+        particles
+            .frame
+            .warnings
+            .iter()
+            .any(|text| text.contains("1 particles have no value of `q`"))
     );
     let flat = ColumnColors { spacing: Spacing::Logarithmic, ..by("z") };
     let error = apply(DUMP, &colored(flat)).expect_err("no range");
@@ -134,7 +138,7 @@ fn columns_without_a_number_have_no_colors_unless_that_is_allowed() {
     let dust = "x,y,z,q\n0,0,0,-4\n1,1,1,\n";
     let colors = ColumnColors { spacing: Spacing::Logarithmic, ..by("q") };
     let (particles, _) = apply(dust, &colored(by("x"))).expect("colors");
-    assert!(particles.warnings.iter().all(|text| !text.contains("no value of")));
+    assert!(particles.frame.warnings.iter().all(|text| !text.contains("no value of")));
     assert!(apply(dust, &colored(colors.clone())).is_err());
     let style = ParticleStyle { allow_empty: true, ..colored(colors.clone()) };
     let (particles, legend) = apply(dust, &style).expect("no colors");
@@ -394,7 +398,7 @@ fn arrows_follow_selections_rotations_and_copies() {
     style.select = Some("x > 4".parse().expect("a selection"));
     let (mut particles, _) = apply(VECTORS, &style).expect("arrows");
     assert_eq!(particles.arrows.vectors, [DVec3::Y * 4.0, DVec3::ZERO, DVec3::Z * 8.0]);
-    particles.rotation = glam::DMat3::from_rotation_x(std::f64::consts::FRAC_PI_2);
+    particles.frame.rotation = glam::DMat3::from_rotation_x(std::f64::consts::FRAC_PI_2);
     style.select = None;
     style.apply(Path::new("a"), &mut particles).expect("arrows");
     assert!(particles.arrows.vectors[0].distance(DVec3::Z * 4.0) < 1e-12);
@@ -409,5 +413,5 @@ fn vectors_that_are_not_there_are_refused_by_name() {
         VECTORS.replace("2,0,0,a", "0,0,0,a").replace("0,4,0", "0,0,0").replace("0,8,d", "0,0,d");
     let (particles, _) = apply(&zero, &with_arrows("velocity", |_| ())).expect("no arrows");
     assert!(particles.arrows.sizes.is_none());
-    assert!(particles.warnings.iter().any(|text| text.contains("no arrows")));
+    assert!(particles.frame.warnings.iter().any(|text| text.contains("no arrows")));
 }

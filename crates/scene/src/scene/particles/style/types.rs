@@ -203,7 +203,7 @@ impl TypeStyle {
 
     /// Returns the spheres of this type.
     pub(super) fn rows(&self, path: &Path, particles: &Particles) -> Result<Vec<usize>, FileError> {
-        let kinds = &particles.kinds;
+        let kinds = &particles.frame.kinds;
         self.check_known(path, &kinds.table)?;
         let (chosen, codes) = (self.kinds(&kinds.table), &kinds.codes);
         Ok((0..codes.len()).filter(|&row| chosen[codes.code(row) as usize]).collect())

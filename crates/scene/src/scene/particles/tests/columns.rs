@@ -61,11 +61,15 @@ fn every_listed_column_can_be_kept() {
             listed.split_whitespace().map(|column| column.replace('_', " ")).collect();
         let spaced = |column: &str| column.replace('_', " ");
         let plain = read_with(content, &ReadOptions::default()).expect(name);
-        assert_eq!(plain.columns.iter().map(|own| spaced(own)).collect::<Vec<_>>(), expected);
-        assert!(plain.numbers.is_empty() && plain.texts.is_empty(), "{name}");
+        assert_eq!(plain.frame.columns.iter().map(|own| spaced(own)).collect::<Vec<_>>(), expected);
+        assert!(plain.frame.numbers.is_empty() && plain.frame.texts.is_empty(), "{name}");
         let all = read_with(content, &rest(1000)).expect(name);
-        assert_eq!((&all.columns, &all.roles), (&plain.columns, &plain.roles), "{name}");
-        for column in &all.columns {
+        assert_eq!(
+            (&all.frame.columns, &all.frame.roles),
+            (&plain.frame.columns, &plain.frame.roles),
+            "{name}"
+        );
+        for column in &all.frame.columns {
             assert_eq!(all.can_color_by(column), column != mixed, "{name}: {column}");
             let asked = Columns { kept: vec![column.clone()], ..Columns::default() };
             let asked = ReadOptions { columns: asked, ..ReadOptions::default() };
@@ -81,7 +85,7 @@ fn every_listed_column_can_be_kept() {
 #[test]
 fn missing_values_are_nan() {
     let find = |particles: &Particles, name: &str| {
-        let column = particles.numbers.iter().find(|column| column.name == name);
+        let column = particles.frame.numbers.iter().find(|column| column.name == name);
         column.expect("a column").values.clone()
     };
     let gro = read_with(FILES[0].content, &rest(1000)).expect("atoms");
@@ -89,7 +93,7 @@ fn missing_values_are_nan() {
     assert!((vx[0], vx[2]) == (0.1227, -0.9999) && vx[1].is_nan());
     let xyz = read_with(FILES[2].content, &rest(1000)).expect("atoms");
     assert_eq!(find(&xyz, "5"), [-0.8, 0.4, 0.4]);
-    assert_eq!((xyz.texts[0].text(0), xyz.texts[0].text(1)), ("first", ""));
+    assert_eq!((xyz.frame.texts[0].text(0), xyz.frame.texts[0].text(1)), ("first", ""));
     let npz = read_with(FILES[4].content, &rest(1000)).expect("rows");
     assert_eq!(find(&npz, "velocity_y"), [-1.0, -4.0, -7.0, -10.0]);
     assert_eq!(find(&npz, "stress_6")[1], 11.0);
@@ -117,10 +121,11 @@ fn unused_columns_of_large_files_are_omitted() {
         let few = Columns { wanted: vec!["q".to_owned()], ..rest(1).columns };
         let options = ReadOptions { columns: few, ..ReadOptions::default() };
         let particles = read_with(content, &options).expect(name);
-        let kept: Vec<&str> = particles.numbers.iter().map(|column| column.name.as_str()).collect();
-        let has_q = particles.columns.iter().any(|column| column == "q");
+        let kept: Vec<&str> =
+            particles.frame.numbers.iter().map(|column| column.name.as_str()).collect();
+        let has_q = particles.frame.columns.iter().any(|column| column == "q");
         assert_eq!(kept, if has_q { vec!["q"] } else { vec![] }, "{name}");
-        assert!(particles.texts.is_empty(), "{name}");
+        assert!(particles.frame.texts.is_empty(), "{name}");
     }
 }
 

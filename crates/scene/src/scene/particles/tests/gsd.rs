@@ -171,7 +171,7 @@ fn other_shapes_are_counted() {
             (0, "particles/typeid", 3, 1, words(&[1, 0, 1])),
             shapes,
         ]);
-        particles(content).warnings.concat()
+        particles(content).frame.warnings.concat()
     };
     let shape = |kind: &str| format!("{:\0<24}", format!("{{\"type\": \"{kind}\"}}"));
     let both = |a: &str, b: &str| with((shape(a) + &shape(b)).as_bytes());

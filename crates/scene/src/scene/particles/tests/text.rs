@@ -91,7 +91,7 @@ fn invalid_rows_are_dropped_and_counted() {
         particles("0 0 0 1\nnan 0 0 1\n0 inf 0 1\n0 0 0 nan\n0 0 0 0\n0 0 0 -1\n1 1 1 1e-320\n");
     assert_eq!(read.spheres.radius, [1.0, 1e-320]);
     let warning = "5 of 7 rows were dropped: 3 not finite, 2 with a radius of 0 or less";
-    assert!(read.warnings[0].ends_with(warning), "{:?}", read.warnings);
+    assert!(read.frame.warnings[0].ends_with(warning), "{:?}", read.frame.warnings);
     let none = fault("nan 0 0 1\n0 0 0 0\n").2;
     assert_eq!(none, "none of its 2 rows is a sphere: 1 not finite, 1 with a radius of 0 or less");
 }
@@ -105,7 +105,11 @@ fn headers_name_columns_in_any_order() {
     assert_eq!(read.spheres.color, [Rgb::new(0.3, 0.2, 0.1), Rgb::ZERO]);
     assert_eq!(read.material_names, ["gold", ""]);
     assert_eq!(read.spheres.material, [0, 1]);
-    assert!(read.warnings[0].ends_with("columns that are not used: id"), "{:?}", read.warnings);
+    assert!(
+        read.frame.warnings[0].ends_with("columns that are not used: id"),
+        "{:?}",
+        read.frame.warnings
+    );
 }
 
 #[test]
@@ -119,10 +123,10 @@ fn atoms_have_radii_and_colors_of_their_elements() {
     let read = particles("3\nwater and more\r\nO 0 0 0 extra\nh1 1 0 0\nQx 2 0 0\n\n");
     assert_eq!(read.spheres.radius, [1.5, 1.2, 1.7]);
     assert_eq!(read.spheres.color[1], Rgb::ONE);
-    assert_eq!(read.warnings.len(), 1);
-    assert!(read.warnings[0].ends_with(": Qx"), "{:?}", read.warnings);
+    assert_eq!(read.frame.warnings.len(), 1);
+    assert!(read.frame.warnings[0].ends_with(": Qx"), "{:?}", read.frame.warnings);
     let frames = particles("1\na\nC 0 0 0\n1\nb\nC 1 0 0\n");
-    assert_eq!((frames.spheres.len(), frames.warnings.len()), (1, 1));
+    assert_eq!((frames.spheres.len(), frames.frame.warnings.len()), (1, 1));
 }
 
 #[test]
@@ -141,7 +145,7 @@ fn options_give_radii_and_scale() {
 fn missing_radii_are_guessed_with_a_warning() {
     let read = particles("0 0 0\n2 0 0\n4 0 0\n6 0 0\n");
     assert_eq!(read.spheres.radius, [0.75; 4]);
-    assert!(read.warnings[0].contains("radius = 0.75"), "{:?}", read.warnings);
+    assert!(read.frame.warnings[0].contains("radius = 0.75"), "{:?}", read.frame.warnings);
 }
 
 #[test]
@@ -149,7 +153,7 @@ fn unclosed_quotes_are_errors_and_long_names_are_shortened() {
     let unclosed = fault("x,y,z\n1,2,3\n\n1,2,\"3,4,5\n");
     assert_eq!(unclosed, (4, 1, "a quote is not closed".to_owned()));
     let read = particles(format!("x,y,z,{}\n1,2,3,4\n", "n".repeat(100_000)));
-    assert!(read.warnings.iter().all(|warning| warning.len() < 1000));
+    assert!(read.frame.warnings.iter().all(|warning| warning.len() < 1000));
 }
 
 #[test]
@@ -181,7 +185,7 @@ proptest! {
 fn a_column_of_ids_is_distinguished_from_coordinates() {
     let read = particles("7 1.5 2 3\n2 2.5 1 0\n9 0.5 1 1\n");
     assert_eq!(read.spheres.x, [1.5, 2.5, 0.5]);
-    assert!(read.warnings.iter().any(|warning| warning.ends_with("is read as ids")));
+    assert!(read.frame.warnings.iter().any(|warning| warning.ends_with("is read as ids")));
     let with_radii = particles("1 1.5 2 3 0.5\n2 2.5 1 0 0.25\n");
     assert_eq!(with_radii.spheres.radius, [0.5, 0.25]);
     // Integer positions, and ids that occur twice.
@@ -294,9 +298,9 @@ fn headers_of_plain_rows_name_their_columns() {
     assert_eq!(numbered.x, [4.0]);
     let unused = particles("# x y z radius charge\n1 2 3 4 5\n");
     assert!(
-        unused.warnings[0].ends_with("columns that are not used: charge"),
+        unused.frame.warnings[0].ends_with("columns that are not used: charge"),
         "{:?}",
-        unused.warnings
+        unused.frame.warnings
     );
 }
 

@@ -28,7 +28,11 @@ fn plain_files_have_symbols_numbers_or_neither() {
     assert_eq!(lammps.step, Some(500));
     let water = particles("4\nTIP4P\nO 0 0 0\nH 1 0 0\nH 0 1 0\nM 0 0 .1\n");
     assert_eq!(water.spheres.len(), 3);
-    assert!(water.warnings[0].contains("1 sites of water models"), "{:?}", water.warnings);
+    assert!(
+        water.frame.warnings[0].contains("1 sites of water models"),
+        "{:?}",
+        water.frame.warnings
+    );
 }
 
 #[test]
@@ -78,7 +82,7 @@ fn scales_reach_positions_radii_and_the_cell() {
         let (plain, scaled) = (particles(text), read_with(text, &options).expect("particles"));
         assert_eq!(scaled.spheres.center(0), plain.spheres.center(0) * 2.0);
         assert!((scaled.spheres.radius[0] / plain.spheres.radius[0] - 6.0).abs() < tolerance);
-        let cell = scaled.cell.expect("a cell");
+        let cell = scaled.frame.cell.expect("a cell");
         assert_eq!(cell.origin, DVec3::splat(2.0));
         assert_eq!(cell.vectors[1], DVec3::new(1.0, 6.0, 0.0));
     }
