@@ -7,6 +7,7 @@ use super::frame::ParticleFrame;
 use super::lines::Line;
 use super::naming::{drop_uncertain_elements, kind, of_atom};
 use super::schema::{Schema, Slot};
+use crate::error::listed;
 use crate::memory;
 use crate::{FileError, MAX_PARTICLES, Rgb};
 use std::collections::HashMap;
@@ -251,6 +252,14 @@ impl Builder {
             + column(frame.materials.codes.width(), !frame.materials.codes.is_empty())
             + size_of::<f64>() * self.kept_extras();
         bytes as u64
+    }
+
+    /// Warns of the file's columns that have no use, if there are any.
+    pub(crate) fn warn_of_unused(&mut self) {
+        let names: Vec<&str> = self.schema.unused.iter().map(String::as_str).collect();
+        if !names.is_empty() {
+            self.frame.warnings.push(listed("columns that are not used", &names));
+        }
     }
 
     /// Returns the frame.

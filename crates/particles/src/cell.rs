@@ -2,22 +2,6 @@
 
 use glam::{DMat3, DVec3};
 
-/// Ends of the twelve edges of a parallelepiped, as corner indices.
-const OUTLINE: [[usize; 2]; 12] = [
-    [0, 1],
-    [2, 3],
-    [4, 5],
-    [6, 7],
-    [0, 2],
-    [1, 3],
-    [4, 6],
-    [5, 7],
-    [0, 4],
-    [1, 5],
-    [2, 6],
-    [3, 7],
-];
-
 /// The periodic cell of a simulation: a parallelepiped, orthogonal or triclinic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
@@ -82,7 +66,9 @@ impl Cell {
     /// Returns the twelve edges, each from one corner to another.
     pub fn edges(&self) -> [[DVec3; 2]; 12] {
         let corners = self.corners();
-        OUTLINE.map(|ends| ends.map(|corner| corners[corner]))
+        let starts = |edge: usize| (0..8).filter(move |corner| corner >> edge & 1 == 0);
+        let mut edges = (0..3).flat_map(|edge| starts(edge).map(move |at| [at, at | 1 << edge]));
+        std::array::from_fn(|_| edges.next().unwrap_or_default().map(|corner| corners[corner]))
     }
 
     /// Returns the matrix from fractional to Cartesian coordinates, without the origin.

@@ -11,7 +11,6 @@ use super::schema::{Schema, Slot};
 use super::source::Source;
 use super::{header, line, number};
 use crate::FileError;
-use crate::error::listed;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -22,14 +21,13 @@ pub(crate) struct Csv {
     record: Record,
     /// Buffer for a row of several lines.
     row: Vec<u8>,
-    done: bool,
 }
 
 impl Csv {
     pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
         let lines = Lines::new(source);
         let (record, row) = (Record::default(), Vec::new());
-        Self { lines, options: options.clone(), record, row, done: false }
+        Self { lines, options: options.clone(), record, row }
     }
 
     /// Returns the next line that is neither blank nor a comment.
@@ -42,9 +40,7 @@ impl Csv {
         }
         lines.next()
     }
-}
 
-impl Csv {
     /// Joins the last line with the following ones until its quotes are closed.
     fn whole_row(&mut self) -> Result<(), FileError> {
         self.lines.back();
@@ -78,9 +74,6 @@ fn is_open(row: &[u8]) -> bool {
 
 impl FrameReader for Csv {
     fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
-        if std::mem::replace(&mut self.done, true) {
-            return Ok(None);
-        }
         // Excel's first line, which declares the separator.
         if Self::line(&mut self.lines)?.is_some_and(|line| !line.bytes.starts_with(b"sep=")) {
             self.lines.back();
@@ -117,10 +110,7 @@ impl FrameReader for Csv {
         if has_commas {
             builder.frame.warnings.push("commas are read as decimal points".to_owned());
         }
-        if !schema.unused.is_empty() {
-            let names: Vec<&str> = schema.unused.iter().map(String::as_str).collect();
-            builder.frame.warnings.push(listed("columns that are not used", &names));
-        }
+        builder.warn_of_unused();
         Ok(Some(builder.finish()))
     }
 }

@@ -16,6 +16,11 @@ const fn set(bytes: &[u8]) -> Separators {
     table
 }
 
+/// Returns the bytes of a line in fixed columns, counted from 0, clamped to its length and trimmed.
+pub(crate) fn fixed(line: &[u8], start: usize, end: usize) -> &[u8] {
+    line.get(start..end.min(line.len())).unwrap_or_default().trim_ascii()
+}
+
 /// Iterator over the non-empty fields of a line.
 #[derive(Clone)]
 pub(crate) struct Fields<'l> {

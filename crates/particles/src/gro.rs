@@ -4,6 +4,7 @@
 use super::builder::Builder;
 use super::categories::Kind;
 use super::cell::Cell;
+use super::fields::fixed;
 use super::format::Format;
 use super::frame::{LengthUnit, ParticleFrame};
 use super::frame_reader::FrameReader;
@@ -78,10 +79,10 @@ impl Gro {
             if !has_kind {
                 builder.kind_of(&line.bytes[5..15], kind);
             }
-            has_velocities = has_velocities || !part(&line, columns(VELOCITY, width)).is_empty();
+            has_velocities = has_velocities || !part(&line, VELOCITY, width).is_empty();
             for &(column, slot) in &others {
                 let field = match slot {
-                    Slot::Extra(_) => part(&line, columns(column, width)),
+                    Slot::Extra(_) => part(&line, column, width),
                     _ => field(&line, column, width)?,
                 };
                 builder.put(slot, &line, field)?;
@@ -124,17 +125,17 @@ fn columns(column: usize, width: usize) -> Range<usize> {
     }
 }
 
-/// Returns a byte range of a line, clamped to its length and trimmed.
-fn part<'l>(line: &Line<'l>, range: Range<usize>) -> &'l [u8] {
-    let end = range.end.min(line.bytes.len());
-    line.bytes.get(range.start..end).unwrap_or_default().trim_ascii()
+/// Returns the content of a column; it is empty if the line ends before it.
+fn part<'l>(line: &Line<'l>, column: usize, width: usize) -> &'l [u8] {
+    let Range { start, end } = columns(column, width);
+    fixed(line.bytes, start, end)
 }
 
 /// Returns the content of a required column.
 fn field<'l>(line: &Line<'l>, column: usize, width: usize) -> Result<&'l [u8], FileError> {
-    let range = columns(column, width);
-    let field = part(line, range.clone());
+    let field = part(line, column, width);
     if field.is_empty() {
+        let range = columns(column, width);
         let message = format!("no {} in this row", NAMES[column]);
         let help = format!("it is expected at columns {} to {}", range.start + 1, range.end);
         return Err(line.whole(message).with_help(help));

@@ -3,7 +3,7 @@
 
 use super::bonds::{Bonds, Listed, row_from_one};
 use super::builder::Builder;
-use super::fields::Fields;
+use super::fields::{Fields, fixed};
 use super::format::Format;
 use super::frame::{LengthUnit, ParticleFrame};
 use super::frame_reader::FrameReader;
@@ -60,8 +60,7 @@ impl Molfile {
             return Ok(Some((title, None)));
         }
         let atoms = line.whole_number(line.bytes.get(..3).unwrap_or(line.bytes))?;
-        let bonds =
-            if self.reads_bonds { line.whole_number(columns(line.bytes, 3, 6))? } else { 0 };
+        let bonds = if self.reads_bonds { line.whole_number(fixed(line.bytes, 3, 6))? } else { 0 };
         Ok(Some((title, Some(Counts { atoms, bonds }))))
     }
 
@@ -103,7 +102,7 @@ impl Molfile {
             };
             let fields = if let Some(rest) = &mut rest {
                 *rest -= 1;
-                [(6, 9), (0, 3), (3, 6)].map(|(start, end)| columns(line.bytes, start, end))
+                [(6, 9), (0, 3), (3, 6)].map(|(start, end)| fixed(line.bytes, start, end))
             } else {
                 let row = line.bytes.strip_prefix(V3000);
                 let words: Vec<&[u8]> = row.map(Fields::blanks).into_iter().flatten().collect();
@@ -151,11 +150,6 @@ struct Counts {
     bonds: u64,
 }
 
-/// Returns columns of a line, clamped to its length and trimmed.
-fn columns(line: &[u8], start: usize, end: usize) -> &[u8] {
-    line.get(start..end.min(line.len())).unwrap_or_default().trim_ascii()
-}
-
 /// Returns the position and symbol of a row: in fixed columns, or after an index in version V3000.
 fn fields<'l>(line: &Line<'l>, extended: bool) -> Result<[&'l [u8]; 4], FileError> {
     let wrong = || {
@@ -169,7 +163,7 @@ fn fields<'l>(line: &Line<'l>, extended: bool) -> Result<[&'l [u8]; 4], FileErro
         let [symbol, x, y, z] = words.try_into().map_err(|_| wrong())?;
         return Ok([x, y, z, symbol]);
     }
-    let part = |start: usize, end: usize| columns(line.bytes, start, end);
+    let part = |start: usize, end: usize| fixed(line.bytes, start, end);
     let fields = [part(0, 10), part(10, 20), part(20, 30), part(31, 34)];
     if fields.iter().any(|field| field.is_empty()) { Err(wrong()) } else { Ok(fields) }
 }

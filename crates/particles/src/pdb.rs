@@ -11,6 +11,7 @@ use super::builder::Builder;
 use super::categories::Kind;
 use super::cell::Cell;
 use super::element::{Element, is_virtual_site, of_aligned_name};
+use super::fields::fixed;
 use super::format::Format;
 use super::frame::{LengthUnit, ParticleFrame};
 use super::frame_reader::FrameReader;
@@ -263,7 +264,7 @@ const MANY: u32 = u32::MAX;
 /// Returns the serial number in the five columns from `start`.
 fn serial(line: &[u8], start: usize) -> Option<Serial> {
     let mut serial = [b' '; 5];
-    let field = bytes(line, start, start + 5);
+    let field = fixed(line, start, start + 5);
     serial[..field.len()].copy_from_slice(field);
     (!field.is_empty()).then_some(serial)
 }
@@ -340,17 +341,12 @@ fn last_bonds(path: &Path) -> Result<Vec<ListedBond>, FileError> {
 
 fn add_title(title: &mut String, line: &[u8]) {
     title.push(' ');
-    title.push_str(&String::from_utf8_lossy(bytes(line, 10, 80)));
-}
-
-/// Returns a byte range of a line, clamped to its length and trimmed.
-fn bytes(line: &[u8], start: usize, end: usize) -> &[u8] {
-    line.get(start..end.min(line.len())).unwrap_or_default().trim_ascii()
+    title.push_str(&String::from_utf8_lossy(fixed(line, 10, 80)));
 }
 
 fn field(line: &[u8], column: usize) -> &[u8] {
     let (_, start, end) = COLUMNS[column];
-    bytes(line, start, end)
+    fixed(line, start, end)
 }
 
 fn position(line: &Line) -> Result<[f64; 3], FileError> {
@@ -398,7 +394,7 @@ fn kind(key: &str) -> Kind {
 /// Parses the cell of `CRYST1`; a unit cell with edges of 1 means none.
 fn cell(line: &Line) -> Result<Option<Cell>, FileError> {
     let number = |start: usize, end: usize| {
-        let field = bytes(line.bytes, start, end);
+        let field = fixed(line.bytes, start, end);
         if field.is_empty() { Ok(0.0) } else { line.number(field) }
     };
     let lengths = [number(6, 15)?, number(15, 24)?, number(24, 33)?];

@@ -32,14 +32,13 @@ const ROWS: usize = 64;
 pub(crate) struct Pqr {
     lines: Lines,
     schema: Result<Arc<Schema>, String>,
-    done: bool,
 }
 
 impl Pqr {
     pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
         let schema = Schema::new(NAMES.map(str::to_owned).into(), options);
         let named = |schema| Arc::new(Schema { naming: Naming::Names, ..schema });
-        Self { lines: Lines::new(source), schema: schema.map(named), done: false }
+        Self { lines: Lines::new(source), schema: schema.map(named) }
     }
 }
 
@@ -66,9 +65,6 @@ fn fields<'l>(line: &Line<'l>) -> Result<[&'l [u8]; 10], FileError> {
 
 impl FrameReader for Pqr {
     fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
-        if std::mem::replace(&mut self.done, true) {
-            return Ok(None);
-        }
         let schema = self.schema.clone().map_err(|message| self.lines.ended(message))?;
         let mut builder = Builder::new(self.lines.path(), Format::Pqr, &schema);
         builder.declare(&TEXTS, &["charge"]);

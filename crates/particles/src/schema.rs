@@ -68,6 +68,22 @@ impl Schema {
         Self::with_roles(names, options, &[])
     }
 
+    /// Assigns roles to columns without names, which are then their numbers from 1: the options' roles, or else those
+    /// of x, y, z and a radius after `ids` columns.
+    pub(crate) fn unnamed(
+        columns: usize,
+        ids: usize,
+        options: &ReadOptions,
+    ) -> Result<Self, String> {
+        let names: Vec<String> = (1..=columns).map(|column| column.to_string()).collect();
+        if !options.columns.roles.is_empty() {
+            return Self::new(names, options);
+        }
+        let roles = [Role::X, Role::Y, Role::Z, Role::Radius].into_iter();
+        let known: Vec<_> = roles.zip(names[ids..].iter().map(String::as_str)).collect();
+        Self::with_roles(names.clone(), options, &known)
+    }
+
     /// Assigns roles as [`Schema::new`] does, with additional names that the format defines.
     pub(crate) fn with_roles(
         names: Vec<String>,

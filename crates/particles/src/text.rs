@@ -7,19 +7,14 @@ use super::frame::ParticleFrame;
 use super::frame_reader::FrameReader;
 use super::lines::{Line, Lines};
 use super::options::ReadOptions;
-use super::role::Role;
 use super::schema::Schema;
 use super::{header, line, number, source::Source, units};
 use crate::FileError;
-use crate::error::listed;
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Number of rows from which columns of ids and decimal commas are detected.
 const ROWS: usize = 200;
-
-/// Roles of columns without names.
-const ROLES: [Role; 4] = [Role::X, Role::Y, Role::Z, Role::Radius];
 
 /// Reader of rows of `x y z` or `x y z radius`, optionally after an id; or of columns named by a
 /// header, which may be in a comment, as `numpy.savetxt` writes it.
@@ -29,7 +24,6 @@ pub(crate) struct Rows {
     layout: Layout,
     /// Buffer for a row with points instead of decimal commas.
     row: Vec<u8>,
-    done: bool,
 }
 
 /// Comments that may be headers, by number of names: the last one that names positions, or else the
@@ -65,7 +59,7 @@ impl Rows {
     pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
         let layout = Layout::of(&source.head);
         let (options, row) = (options.clone(), Vec::new());
-        Self { lines: Lines::new(source), options, layout, row, done: false }
+        Self { lines: Lines::new(source), options, layout, row }
     }
 }
 
@@ -105,11 +99,7 @@ impl Layout {
                 named => return named,
             }
         }
-        let names: Vec<String> = (1..=self.columns).map(|column| column.to_string()).collect();
-        if !options.columns.roles.is_empty() {
-            self.has_ids = false;
-            return Schema::new(names, options).map_err(|error| line.whole(error));
-        }
+        self.has_ids &= options.columns.roles.is_empty();
         if !self.has_usual_columns(options) {
             let message =
                 format!("{} columns, but a row is `x y z` or `x y z radius`", self.columns);
@@ -117,9 +107,8 @@ impl Layout {
                         line that names the columns before the rows; write decimal points, not commas";
             return Err(line.whole(message).with_help(help));
         }
-        let named = names[usize::from(self.has_ids)..].iter().map(String::as_str);
-        let known: Vec<_> = ROLES.into_iter().zip(named).collect();
-        Schema::with_roles(names.clone(), options, &known).map_err(|error| line.whole(error))
+        Schema::unnamed(self.columns, usize::from(self.has_ids), options)
+            .map_err(|error| line.whole(error))
     }
 
     /// Returns whether the columns are known without names, or assigned by the options.
@@ -235,18 +224,15 @@ impl FrameReader for Rows {
             }
             builder.row(&line, fields)?;
         }
-        let once = !std::mem::replace(&mut self.done, true);
-        Ok(builder.filter(|_| once).map(|mut builder| {
+        Ok(builder.map(|mut builder| {
             if self.layout.has_ids {
                 builder.frame.warnings.push("the first column is read as ids".to_owned());
             }
             if self.layout.decimal_commas {
                 builder.frame.warnings.push("commas are read as decimal points".to_owned());
             }
-            let schema = builder.schema().clone();
-            if self.layout.has_names && !schema.unused.is_empty() {
-                let names: Vec<&str> = schema.unused.iter().map(String::as_str).collect();
-                builder.frame.warnings.push(listed("columns that are not used", &names));
+            if self.layout.has_names {
+                builder.warn_of_unused();
             }
             builder.finish()
         }))

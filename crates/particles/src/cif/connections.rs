@@ -27,26 +27,16 @@ const SITE_COLUMNS: [[&str; 2]; 5] = [
     ["label_atom_id", "auth_atom_id"],
 ];
 
-/// Columns of the same, and of the alternate location and symmetry, of both atoms of a connection.
-const PARTNERS: [[[&str; 2]; 7]; 2] = [
-    [
-        ["ptnr1_auth_asym_id", "ptnr1_label_asym_id"],
-        ["ptnr1_auth_seq_id", "ptnr1_label_seq_id"],
-        ["pdbx_ptnr1_PDB_ins_code", "pdbx_ptnr1_PDB_ins_code"],
-        ["ptnr1_label_comp_id", "ptnr1_auth_comp_id"],
-        ["ptnr1_label_atom_id", "ptnr1_label_atom_id"],
-        ["pdbx_ptnr1_label_alt_id", "pdbx_ptnr1_label_alt_id"],
-        ["ptnr1_symmetry", "ptnr1_symmetry"],
-    ],
-    [
-        ["ptnr2_auth_asym_id", "ptnr2_label_asym_id"],
-        ["ptnr2_auth_seq_id", "ptnr2_label_seq_id"],
-        ["pdbx_ptnr2_PDB_ins_code", "pdbx_ptnr2_PDB_ins_code"],
-        ["ptnr2_label_comp_id", "ptnr2_auth_comp_id"],
-        ["ptnr2_label_atom_id", "ptnr2_label_atom_id"],
-        ["pdbx_ptnr2_label_alt_id", "pdbx_ptnr2_label_alt_id"],
-        ["ptnr2_symmetry", "ptnr2_symmetry"],
-    ],
+/// Columns of the same, and of the alternate location and symmetry, of the first atom of a connection; those of the
+/// second one have a 2 for the 1.
+const PARTNER: [[&str; 2]; 7] = [
+    ["ptnr1_auth_asym_id", "ptnr1_label_asym_id"],
+    ["ptnr1_auth_seq_id", "ptnr1_label_seq_id"],
+    ["pdbx_ptnr1_PDB_ins_code", "pdbx_ptnr1_PDB_ins_code"],
+    ["ptnr1_label_comp_id", "ptnr1_auth_comp_id"],
+    ["ptnr1_label_atom_id", "ptnr1_label_atom_id"],
+    ["pdbx_ptnr1_label_alt_id", "pdbx_ptnr1_label_alt_id"],
+    ["ptnr1_symmetry", "ptnr1_symmetry"],
 ];
 
 /// A connection of two atoms in a file.
@@ -138,16 +128,19 @@ impl Connections {
         if !BONDS.iter().any(|bond| kind.starts_with(bond.as_bytes())) {
             return;
         }
-        let symmetry = PARTNERS.map(|columns| field(columns[6]));
+        let partners = ["1", "2"].map(|atom| {
+            PARTNER.map(|wanted| {
+                let [one, other] = wanted.map(|name| name.replace('1', atom));
+                field([&one, &other])
+            })
+        });
+        let symmetry = partners.map(|partner| partner[6]);
         let is_same = |symmetry: &[u8]| matches!(symmetry, b"" | b"1_555");
         if symmetry[0] != symmetry[1] && !symmetry.into_iter().all(is_same) {
             self.symmetric += 1;
             return;
         }
-        let atoms = PARTNERS.map(|columns| {
-            let parts: Vec<&[u8]> = columns[..5].iter().map(|wanted| field(*wanted)).collect();
-            (parts.join(&0), field(columns[5]).to_vec())
-        });
+        let atoms = partners.map(|partner| (partner[..5].join(&0), partner[5].to_vec()));
         self.list.push(Connection { atoms, kind, line });
     }
 
@@ -237,11 +230,7 @@ pub(super) fn read_rest(
                 break;
             }
             Token::Loop => {
-                let mut tags = Vec::new();
-                while let Some(Token::Tag(tag)) = tokens.next()? {
-                    tags.push(tag.to_owned());
-                }
-                tokens.back();
+                let tags = tokens.tags()?;
                 let first = tags.first().map_or("", String::as_str);
                 if is_of(first, CONNECTIONS) || is_of(first, COMPONENT_BONDS) {
                     connections.read(tokens, &tags)?;

@@ -176,11 +176,7 @@ impl Crystal {
 
     /// Reads a loop of operations or atoms, or skips another loop.
     fn list(&mut self, block: &mut Block) -> Result<(), FileError> {
-        let mut tags = Vec::new();
-        while let Some(Token::Tag(tag)) = self.tokens.next()? {
-            tags.push(tag.to_owned());
-        }
-        self.tokens.back();
+        let tags = self.tokens.tags()?;
         let tags_now: Vec<String> = tags.iter().map(|tag| plain(tag)).collect();
         let is_site = |tag: &String| *tag == format!("{SITE}{}", FRACTIONAL[0].1);
         let is_symmetry = |tag: &&String| {
@@ -203,20 +199,12 @@ impl Crystal {
             if self.options.reads_bonds() {
                 block.geometry.extend(geometry::read(&mut self.tokens, &tags_now)?);
             } else {
-                block.bonds += self.count_rows(tags.len())?;
+                block.bonds += Rows::count(&mut self.tokens, tags.len())?;
             }
         } else if tags_now.iter().any(|tag| tag.starts_with("_atom_site_aniso_")) {
-            block.displacements += self.count_rows(tags.len())?;
+            block.displacements += Rows::count(&mut self.tokens, tags.len())?;
         }
         Ok(())
-    }
-
-    fn count_rows(&mut self, columns: usize) -> Result<u64, FileError> {
-        let (mut rows, mut count) = (Rows::new(columns), 0);
-        while rows.read(&mut self.tokens)? {
-            count += 1;
-        }
-        Ok(count)
     }
 
     /// Reads the atoms of a loop.

@@ -179,11 +179,7 @@ impl MmCif {
 
     /// Reads the tags of a loop; returns `None` if it doesn't list atoms.
     fn open(&mut self) -> Result<Option<Sites>, FileError> {
-        let mut tags = Vec::new();
-        while let Some(Token::Tag(tag)) = self.tokens.next()? {
-            tags.push(tag.to_owned());
-        }
-        self.tokens.back();
+        let tags = self.tokens.tags()?;
         let is_site = |tag: &String| {
             tag.get(..SITE.len()).is_some_and(|start| start.eq_ignore_ascii_case(SITE))
         };
@@ -199,10 +195,7 @@ impl MmCif {
             {
                 connections.read(&mut self.tokens, &tags)?;
             } else if is_of(connections::CONNECTIONS) {
-                let mut rows = Rows::new(tags.len());
-                while rows.read(&mut self.tokens)? {
-                    self.bonds += 1;
-                }
+                self.bonds += Rows::count(&mut self.tokens, tags.len())?;
             }
             return Ok(None);
         }

@@ -38,6 +38,15 @@ impl Rows {
         Ok(true)
     }
 
+    /// Passes over the rows of a loop with so many columns. Returns their number.
+    pub(super) fn count(tokens: &mut Tokens, columns: usize) -> Result<u64, FileError> {
+        let (mut rows, mut count) = (Self::new(columns), 0);
+        while rows.read(tokens)? {
+            count += 1;
+        }
+        Ok(count)
+    }
+
     /// Returns a value of the row.
     pub(super) fn field(&self, column: usize) -> &[u8] {
         let start = column.checked_sub(1).map_or(0, |before| self.ends[before]);

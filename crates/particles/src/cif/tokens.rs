@@ -63,6 +63,16 @@ impl Tokens {
         self.again = true;
     }
 
+    /// Returns the tags that begin a loop, after `loop_`.
+    pub(super) fn tags(&mut self) -> Result<Vec<String>, FileError> {
+        let mut tags = Vec::new();
+        while let Some(Token::Tag(tag)) = self.next()? {
+            tags.push(tag.to_owned());
+        }
+        self.back();
+        Ok(tags)
+    }
+
     /// Returns the line of the last token.
     pub(super) fn line(&self) -> Line<'_> {
         Line::new(self.lines.path(), self.number, &self.line)

@@ -90,11 +90,23 @@ impl Gsd {
 
     /// Returns numbers of the whole frame, which may be only in the first frame.
     fn whole(&mut self, name: &str) -> Result<Option<Vec<f64>>, FileError> {
-        let own = self.file.numbers(self.next, name)?;
-        match own {
-            Some(values) => Ok(Some(values)),
-            None => self.file.numbers(0, name),
-        }
+        Ok(match self.file.numbers(self.next, name)? {
+            None => self.file.numbers(0, name)?,
+            own => own,
+        })
+    }
+
+    /// Returns the first number of a chunk of the whole frame.
+    fn number(&mut self, name: &str) -> Result<Option<f64>, FileError> {
+        Ok(self.whole(name)?.and_then(|values| values.first().copied()))
+    }
+
+    /// Returns texts of the whole frame, which may be only in the first frame.
+    fn texts(&mut self, name: &str) -> Result<Option<Vec<String>>, FileError> {
+        Ok(match self.file.texts(self.next, name)? {
+            None => self.file.texts(0, name)?,
+            own => own,
+        })
     }
 
     /// Returns a column by its name: one of [`COLUMNS`], or a chunk with one number per particle.
@@ -190,12 +202,7 @@ impl Gsd {
     }
 
     fn kinds(&mut self, frame: &mut ParticleFrame) -> Result<(), FileError> {
-        let own = self.file.texts(self.next, "particles/types")?;
-        let types = match own {
-            Some(types) => Some(types),
-            None => self.file.texts(0, "particles/types")?,
-        };
-        let types = types.unwrap_or_else(|| vec!["A".to_owned()]);
+        let types = self.texts("particles/types")?.unwrap_or_else(|| vec!["A".to_owned()]);
         let count = frame.len() as u64;
         let codes = self.values("particles/typeid", count)?;
         let unknown = types.len() as f64;
@@ -235,11 +242,7 @@ impl Gsd {
 
     /// Reads the bonds: rows of both particles, and types.
     fn bonds(&mut self, particles: usize) -> Result<Bonds, FileError> {
-        let types = match self.file.texts(self.next, "bonds/types")? {
-            Some(types) => Some(types),
-            None => self.file.texts(0, "bonds/types")?,
-        };
-        let types = types.unwrap_or_default();
+        let types = self.texts("bonds/types")?.unwrap_or_default();
         let groups = self.whole("bonds/group")?.unwrap_or_default();
         let kinds = self.whole("bonds/typeid")?.unwrap_or_default();
         let mut bonds = Listed::default();
@@ -269,15 +272,10 @@ impl Gsd {
         if self.options.reads_bonds() {
             frame.bonds = Some(self.bonds(frame.len())?);
         } else {
-            let bonds = self.whole("bonds/N")?.and_then(|count| count.first().copied());
-            frame.add_undrawn(Undrawn::Bonds, bonds.unwrap_or(0.0) as u64);
+            frame.add_undrawn(Undrawn::Bonds, self.number("bonds/N")?.unwrap_or(0.0) as u64);
         }
-        let shapes = match self.file.texts(self.next, "particles/type_shapes")? {
-            Some(shapes) => Some(shapes),
-            None => self.file.texts(0, "particles/type_shapes")?,
-        };
-        let shapes: Vec<TypeShape> =
-            shapes.unwrap_or_default().iter().map(|shape| TypeShape::of(shape)).collect();
+        let shapes = self.texts("particles/type_shapes")?.unwrap_or_default();
+        let shapes: Vec<TypeShape> = shapes.iter().map(|shape| TypeShape::of(shape)).collect();
         let codes = &frame.kinds.codes;
         let shape = |row| shapes.get(codes.code(row) as usize).copied().unwrap_or_default();
         let rows = 0..codes.len();
@@ -309,8 +307,7 @@ impl Gsd {
 
     fn frame(&mut self) -> Result<ParticleFrame, FileError> {
         let mut frame = ParticleFrame { format: Format::Gsd, ..ParticleFrame::default() };
-        let count = self.whole("particles/N")?.and_then(|count| count.first().copied());
-        let count = count.unwrap_or(0.0) as u64;
+        let count = self.number("particles/N")?.unwrap_or(0.0) as u64;
         if count == 0 {
             return Ok(frame);
         }
@@ -323,8 +320,7 @@ impl Gsd {
         frame.radius = self.radius(count)?;
         let parts = self.more_columns(count);
         frame.numbers = self.kept(count, &parts)?;
-        let step = self.whole("configuration/step")?.and_then(|step| step.first().copied());
-        frame.step = Some(step.unwrap_or(0.0) as i64);
+        frame.step = Some(self.number("configuration/step")?.unwrap_or(0.0) as i64);
         frame.cell = self.whole("configuration/box")?.and_then(|edges| cell(&edges));
         self.bonds_and_shapes(&mut frame)?;
         frame.columns = COLUMNS.map(str::to_owned).into();

@@ -158,10 +158,15 @@ impl Element {
     }
 }
 
+/// Returns the address of the object that a link of this name leads to.
+fn linked(links: &[(String, u64)], name: &str) -> Option<u64> {
+    links.iter().find(|(own, _)| own == name).map(|&(_, at)| at)
+}
+
 /// Returns the particles of a file; `None` if it follows none of the conventions.
 pub(super) fn find(file: &mut File) -> Result<Option<Trajectory>, FileError> {
     let links = file.links(file.root)?;
-    let find = |name: &str| links.iter().find(|(own, _)| own == name).map(|&(_, at)| at);
+    let find = |name: &str| linked(&links, name);
     if let Some(particles) = find("particles") {
         return h5md(file, particles);
     }
@@ -181,7 +186,7 @@ fn element(file: &mut File, at: u64) -> Result<Option<(Element, Axis)>, FileErro
         return Ok(Some((Element { dataset, steps: None, scale: 1.0 }, Axis::Unknown)));
     }
     let links = file.links(at)?;
-    let find = |name: &str| links.iter().find(|(own, _)| own == name).map(|&(_, at)| at);
+    let find = |name: &str| linked(&links, name);
     let Some(value) = find("value") else { return Ok(None) };
     let Some(dataset) = file.dataset(value)? else { return Ok(None) };
     let steps = axis(file, find("step"))?;
@@ -211,7 +216,7 @@ fn h5md(file: &mut File, particles: u64) -> Result<Option<Trajectory>, FileError
     let mut cell = CellSource::None;
     for (name, group) in file.links(particles)? {
         let links = file.links(group)?;
-        let find = |name: &str| links.iter().find(|(own, _)| own == name).map(|&(_, at)| at);
+        let find = |name: &str| linked(&links, name);
         let Some(position) = find("position") else { continue };
         let Some((position, times)) = element(file, position)? else { continue };
         let [count, 2 | 3] = *position.lengths() else {
@@ -274,8 +279,8 @@ fn h5md_box(file: &mut File, at: u64) -> Result<CellSource, FileError> {
         _ => [true; 3],
     };
     let links = file.links(at)?;
-    let mut find = |name: &str| match links.iter().find(|(own, _)| own == name) {
-        Some((_, at)) => Ok(element(file, *at)?.map(|(element, _)| element)),
+    let mut find = |name: &str| match linked(&links, name) {
+        Some(at) => Ok(element(file, at)?.map(|(element, _)| element)),
         None => Ok::<_, FileError>(None),
     };
     let (edges, offset) = (find("edges")?, find("offset")?);
@@ -307,8 +312,8 @@ fn gadget(
     let mut found = Vec::new();
     for (name, group) in parts {
         let links = file.links(*group)?;
-        let Some((_, at)) = links.iter().find(|(own, _)| own == "Coordinates") else { continue };
-        let Some(dataset) = file.dataset(*at)? else { continue };
+        let Some(at) = linked(&links, "Coordinates") else { continue };
+        let Some(dataset) = file.dataset(at)? else { continue };
         let &[count, 3] = &dataset.shape[..] else { continue };
         let element = Element { dataset, steps: None, scale: 1.0 };
         let Some(positions) = element.columns("Coordinates", count) else { continue };
@@ -343,10 +348,7 @@ fn gadget(
 
 /// Finds the variables of Amber's conventions: frames of coordinates, velocities and cells.
 fn amber(file: &mut File, links: &[(String, u64)]) -> Result<Option<Trajectory>, FileError> {
-    let mut read = |name: &str| match links.iter().find(|(own, _)| own == name) {
-        Some((_, at)) => file.dataset(*at),
-        None => Ok(None),
-    };
+    let mut read = |name: &str| linked(links, name).map_or(Ok(None), |at| file.dataset(at));
     let timed = |dataset: Dataset| {
         let scale = dataset.attribute("scale_factor").and_then(Values::number).unwrap_or(1.0);
         Element { dataset, steps: Some(Axis::Unknown), scale }

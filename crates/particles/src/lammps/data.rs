@@ -31,7 +31,6 @@ const ELLIPSOID: [&str; 7] = ["shapex", "shapey", "shapez", "quatw", "quati", "q
 pub(in super::super) struct Data {
     lines: Lines,
     options: ReadOptions,
-    done: bool,
 }
 
 /// The header and the sections other than atoms.
@@ -57,7 +56,7 @@ struct Head {
 
 impl Data {
     pub(in super::super) fn new(source: Source, options: &ReadOptions) -> Self {
-        Self { lines: Lines::new(source), options: options.clone(), done: false }
+        Self { lines: Lines::new(source), options: options.clone() }
     }
 
     /// Returns the next line that is neither blank nor a comment.
@@ -292,9 +291,6 @@ fn is_section(line: &[u8]) -> bool {
 
 impl FrameReader for Data {
     fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
-        if std::mem::replace(&mut self.done, true) {
-            return Ok(None);
-        }
         let Some(title) = self.lines.next()? else { return Ok(None) };
         let mut head = Head { title: title.text().trim().to_owned(), ..Head::default() };
         let mut lends_ids = self.options.reads_bonds() && velocities::want_ids(&mut self.options);

@@ -98,9 +98,7 @@ impl Npz {
             let message = format!("the array `{name}` cannot be read ({error}); there are {names}");
             FileError::whole_file(&self.path, message)
         })?;
-        Array::open(file, transpose).map_err(|message| {
-            FileError::whole_file(&self.path, format!("the array `{name}` {message}"))
-        })
+        Array::open(file, transpose).map_err(|message| fault(&self.path, name, &message))
     }
 
     /// Reads positions, and returns the name of their array.
@@ -132,16 +130,11 @@ impl Npz {
         };
         let path = self.path.clone();
         let mut array = self.open(&name, Transpose::ToPositions)?;
-        let schema = schema(&array, &ReadOptions::default()).map_err(|message| {
-            FileError::whole_file(&path, format!("the array `{name}` {message}"))
-        })?;
-        let schema = Arc::new(schema);
+        let schema = schema(&array, &ReadOptions::default());
+        let schema = Arc::new(schema.map_err(|message| fault(&path, &name, &message))?);
         let mut builder = Builder::new(&path, Format::Npz, &schema);
-        let warning = array.warning();
-        builder
-            .frame
-            .warnings
-            .extend(warning.map(|warning| format!("the array `{name}`: {warning}")));
+        let warning = array.warning().map(|warning| format!("the array `{name}`: {warning}"));
+        builder.frame.warnings.extend(warning);
         array.rows(&path, |row| {
             for (slot, &value) in schema.slots.iter().zip(row.numbers) {
                 builder.put_number(*slot, value);
@@ -196,8 +189,7 @@ impl Npz {
         for name in &columns.kept {
             if let Some(part) = parts.iter().find(|part| part.array == *name && part.width > 1) {
                 let (width, first) = (part.width, &part.name);
-                let message = format!("the array `{name}` has {width} columns");
-                let error = FileError::whole_file(&self.path, message);
+                let error = fault(&self.path, name, &format!("has {width} columns"));
                 return Err(error.with_help(format!("name one of them, as in {first}")));
             }
             asked.push(find(name).unwrap_or_else(|| whole(name)));
@@ -257,48 +249,42 @@ impl Npz {
     ) -> Result<(), FileError> {
         let path = self.path.clone();
         let mut array = self.open(name, Transpose::Never)?;
-        let fault = if array.is_text(0) {
+        let found = if array.is_text(0) {
             "holds texts".to_owned()
         } else if array.columns() != 1 {
             format!("has {} columns", array.columns())
         } else {
             return array.rows(&path, |row| take(row.numbers[0]));
         };
-        let message =
-            format!("the array `{name}` {fault}, but x, y and z have one number in each row");
-        Err(FileError::whole_file(&path, message))
+        let message = format!("{found}, but x, y and z have one number in each row");
+        Err(fault(&path, name, &message))
     }
 
     /// Returns the numbers of an array that has a row of `columns` numbers for each particle.
     fn rows(&mut self, name: &str, columns: usize, count: usize) -> Result<Vec<f64>, FileError> {
         let path = self.path.clone();
         let mut array = self.open(name, Transpose::ToRows(count as u64))?;
-        let fault = |found: &str| number_of(&path, name, found, count);
         if array.is_text(0) {
-            let message = format!("the array `{name}` holds texts, but numbers are needed");
-            return Err(FileError::whole_file(&path, message));
+            return Err(fault(&path, name, "holds texts, but numbers are needed"));
         }
-        if columns > 1 && array.columns() != columns {
-            let message = format!(
-                "the array `{name}` has rows of {} numbers, but {columns} are needed",
-                array.columns()
-            );
-            return Err(FileError::whole_file(&path, message));
+        let width = array.columns();
+        if columns > 1 && width != columns {
+            let message = format!("has rows of {width} numbers, but {columns} are needed");
+            return Err(fault(&path, name, &message));
         }
+        let wrong = |found: &str| number_of(&path, name, found, count);
         let mut values = Vec::new();
         array.rows(&path, |row| {
             values.extend_from_slice(row.numbers);
-            if values.len() > count * columns { Err(fault("more rows")) } else { Ok(()) }
+            if values.len() > count * columns { Err(wrong("more rows")) } else { Ok(()) }
         })?;
         if values.len() == count * columns {
             Ok(values)
         } else {
-            Err(fault(&format!("{} numbers", values.len())))
+            Err(wrong(&format!("{} numbers", values.len())))
         }
     }
-}
 
-impl Npz {
     /// Returns a column of an array of texts, one for each particle; `None` if the array holds numbers.
     fn texts(
         &mut self,
@@ -346,9 +332,7 @@ impl Npz {
         }
         Ok(())
     }
-}
 
-impl Npz {
     /// Returns the rows and columns of an array; `None` if it has more dimensions or cannot be read.
     pub(super) fn shape(&mut self, name: &str, transpose: Transpose) -> Option<[u64; 2]> {
         let array = self.open(name, transpose).ok()?;
@@ -367,10 +351,14 @@ impl Npz {
     }
 }
 
+/// Returns an error about an array.
+fn fault(path: &Path, name: &str, message: &str) -> FileError {
+    FileError::whole_file(path, format!("the array `{name}` {message}"))
+}
+
 /// Returns the error for an array that does not have a row for each particle.
 fn number_of(path: &Path, name: &str, found: &str, count: usize) -> FileError {
-    let message = format!("the array `{name}` has {found}, but there are {count} particles");
-    FileError::whole_file(path, message)
+    fault(path, name, &format!("has {found}, but there are {count} particles"))
 }
 
 impl FrameReader for Npz {

@@ -16,7 +16,6 @@ use super::format::Format;
 use super::frame::ParticleFrame;
 use super::frame_reader::FrameReader;
 use super::options::ReadOptions;
-use super::role::Role;
 use super::schema::{Schema, Slot};
 use super::source::Source;
 use crate::FileError;
@@ -73,19 +72,13 @@ fn columns<R: Read>(array: &Array<R>, options: &ReadOptions) -> Result<Schema, S
         return Schema::new(names, options);
     }
     let columns = array.columns();
-    let names: Vec<String> = (1..=columns).map(|column| column.to_string()).collect();
-    if !options.columns.roles.is_empty() {
-        return Schema::new(names, options);
-    }
-    if !(3..=4).contains(&columns) {
+    if options.columns.roles.is_empty() && !(3..=4).contains(&columns) {
         return Err(format!(
             "is an array of {columns} columns, but a row is `x y z` or `x y z radius`; say which \
              columns are what, as in --columns x=1,y=2,z=3,radius=4"
         ));
     }
-    let roles = [Role::X, Role::Y, Role::Z, Role::Radius].into_iter();
-    let known: Vec<_> = roles.zip(names.iter().map(String::as_str)).collect();
-    Schema::with_roles(names.clone(), options, &known)
+    Schema::unnamed(columns, 0, options)
 }
 
 impl FrameReader for Npy {
