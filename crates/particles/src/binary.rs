@@ -1,9 +1,7 @@
 //! Byte ranges of a binary file, and the numbers in them.
 
-use super::progress::CountedFile;
-use super::scalar::{Order, Scalar};
-use super::source::Source;
-use crate::FileError;
+use crate::scalar::{Order, Scalar};
+use crate::{FileError, progress::CountedFile, source::Source};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 use std::sync::Arc;

@@ -1,15 +1,12 @@
 //! Builds a frame: columns grow with the rows that are read, never by a count in the file.
 
-use super::Format;
-use super::categories::{Codebook, Kind, add};
-use super::extra::Extra;
-use super::frame::ParticleFrame;
-use super::lines::Line;
-use super::naming::{drop_uncertain_elements, kind, of_atom};
-use super::schema::{Schema, Slot};
-use crate::error::listed;
-use crate::memory;
-use crate::{FileError, MAX_PARTICLES, Rgb};
+use crate::categories::{Codebook, add};
+use crate::naming::{drop_uncertain_elements, kind, of_atom};
+use crate::schema::{Schema, Slot};
+use crate::{
+    FileError, Format, Kind, MAX_PARTICLES, ParticleFrame, Rgb, error::listed, extra::Extra,
+    lines::Line, memory,
+};
 use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;

@@ -1,17 +1,11 @@
 //! Reads CFG of AtomEye, standard and extended: fractional coordinates, in angstrom
 //! (Li, "AtomEye", 2003). `Transform` and `eta` are ignored.
 
-use super::builder::Builder;
-use super::cell::Cell;
-use super::format::Format;
-use super::frame::{LengthUnit, ParticleFrame};
-use super::frame_reader::FrameReader;
-use super::lines::Lines;
-use super::number;
-use super::options::ReadOptions;
-use super::schema::{Schema, Slot};
-use super::source::Source;
-use crate::FileError;
+use crate::schema::{Schema, Slot};
+use crate::{
+    Cell, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
+    frame_reader::FrameReader, lines::Lines, number, source::Source,
+};
 use glam::DVec3;
 use std::sync::Arc;
 

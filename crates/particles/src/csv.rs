@@ -1,16 +1,12 @@
 //! Reads CSV with a header.
 
-use super::builder::Builder;
-use super::format::Format;
-use super::frame::ParticleFrame;
-use super::frame_reader::FrameReader;
-use super::lines::{LONGEST, Line, Lines};
-use super::options::ReadOptions;
-use super::record::{Record, header_names, separator};
-use super::schema::{Schema, Slot};
-use super::source::Source;
-use super::{header, line, number};
-use crate::FileError;
+use crate::lines::{LONGEST, Line, Lines};
+use crate::record::{Record, header_names, separator};
+use crate::schema::{Schema, Slot};
+use crate::{
+    FileError, Format, ParticleFrame, ReadOptions, builder::Builder, frame_reader::FrameReader,
+    header, line, number, source::Source,
+};
 use std::ops::Range;
 use std::sync::Arc;
 

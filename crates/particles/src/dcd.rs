@@ -2,17 +2,12 @@
 //! coordinates in angstrom, in either byte order, with lengths of records in 32 or 64 bits
 //! (charmm-gui.org/charmmdoc/dynamc.html; NAMD's `dcdlib.C`).
 
-use super::binary::{BinaryFile, Numbers};
-use super::builder::Builder;
-use super::cell::Cell;
-use super::format::Format;
-use super::frame::{LengthUnit, ParticleFrame};
-use super::frame_reader::FrameReader;
-use super::options::ReadOptions;
-use super::scalar::{Order, Scalar};
-use super::schema::Schema;
-use super::source::Source;
-use crate::FileError;
+use crate::binary::{BinaryFile, Numbers};
+use crate::scalar::{Order, Scalar};
+use crate::{
+    Cell, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
+    frame_reader::FrameReader, schema::Schema, source::Source,
+};
 use glam::DVec3;
 use std::sync::Arc;
 

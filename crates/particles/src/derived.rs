@@ -1,9 +1,9 @@
 //! Columns that follow from neighbors: `coordination`, the number of bonds or of neighbors, and `cluster`, the
 //! connected component, numbered by size.
 
-use super::bonds::{BondRules, BondSource, Bonds, from_distance};
-use super::frame::{NumberColumn, ParticleFrame};
-use super::options::ReadOptions;
+use crate::{
+    BondRules, BondSource, Bonds, NumberColumn, ParticleFrame, ReadOptions, bonds::from_distance,
+};
 
 /// Names of the columns.
 const NAMES: [&str; 2] = ["coordination", "cluster"];

@@ -1,10 +1,7 @@
 //! Extra columns, of numbers or texts depending on their first value.
 
-use super::categories::{Codebook, TextColumn, add};
-use super::frame::NumberColumn;
-use super::lines::Line;
-use super::number;
-use crate::FileError;
+use crate::categories::{Codebook, add};
+use crate::{FileError, NumberColumn, TextColumn, lines::Line, number};
 
 /// Fields that mean a missing value.
 const MISSING: [&[u8]; 3] = [b"", b".", b"?"];

@@ -1,7 +1,6 @@
 //! The trait of readers: they return the frames of a file one after another.
 
-use super::frame::ParticleFrame;
-use crate::FileError;
+use crate::{FileError, ParticleFrame};
 
 /// Reader of a file's frames.
 pub(crate) trait FrameReader: Send {

@@ -1,19 +1,12 @@
 //! Reads GRO of GROMACS: fixed columns, lengths in nanometers
 //! (manual.gromacs.org/current/reference-manual/file-formats.html).
 
-use super::builder::Builder;
-use super::categories::Kind;
-use super::cell::Cell;
-use super::fields::fixed;
-use super::format::Format;
-use super::frame::{LengthUnit, ParticleFrame};
-use super::frame_reader::FrameReader;
-use super::lines::{Line, Lines};
-use super::naming;
-use super::options::ReadOptions;
-use super::schema::{Naming, Schema, Slot};
-use super::{number, source::Source};
-use crate::FileError;
+use crate::lines::{Line, Lines};
+use crate::schema::{Naming, Schema, Slot};
+use crate::{
+    Cell, FileError, Format, Kind, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
+    fields::fixed, frame_reader::FrameReader, naming, number, source::Source,
+};
 use glam::DVec3;
 use memchr::memchr_iter;
 use std::ops::Range;

@@ -1,7 +1,6 @@
 //! Header lines of tables: names of columns before rows of numbers.
 
-use super::options::ReadOptions;
-use super::{fields::Fields, number, record};
+use crate::{ReadOptions, fields::Fields, number, record};
 
 /// Returns the names in a header, separated by commas, semicolons, tabs or blanks. A unit in brackets
 /// belongs to the name before it.

@@ -1,8 +1,6 @@
 //! Numbers of particles, by which rows are sorted where files have them in any order.
 
-use super::aliases;
-use super::format::Format;
-use super::frame::ParticleFrame;
+use crate::{Format, ParticleFrame, aliases};
 
 /// Name of the column of numbers of particles, as `aliases` knows it.
 pub(crate) const ID: &str = "id";

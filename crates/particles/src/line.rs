@@ -1,7 +1,6 @@
 //! A line of a text file, and its numbers.
 
-use super::{fields::Fields, number};
-use crate::FileError;
+use crate::{FileError, fields::Fields, number};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::path::Path;

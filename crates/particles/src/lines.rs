@@ -1,8 +1,7 @@
 //! Splits a text file into lines, in large blocks.
 
 pub(crate) use super::line::Line;
-use super::source::Source;
-use crate::FileError;
+use crate::{FileError, source::Source};
 use memchr::{memchr, memchr_iter};
 use std::io::{self, Read};
 use std::ops::Range;

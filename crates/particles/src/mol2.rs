@@ -1,18 +1,12 @@
 //! Reads MOL2 of Tripos: molecules, one frame each, in angstrom (zhanggroup.org/DockRMSD/mol2.pdf).
 
-use super::bonds::{Listed, Numbering};
-use super::builder::Builder;
-use super::cell::Cell;
-use super::fields::Fields;
-use super::format::Format;
-use super::frame::{LengthUnit, ParticleFrame};
-use super::frame_reader::FrameReader;
-use super::lines::{Line, Lines};
-use super::number;
-use super::options::ReadOptions;
-use super::schema::{Schema, Slot};
-use super::source::Source;
-use crate::FileError;
+use crate::bonds::{Listed, Numbering};
+use crate::lines::{Line, Lines};
+use crate::schema::{Schema, Slot};
+use crate::{
+    Cell, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
+    fields::Fields, frame_reader::FrameReader, number, source::Source,
+};
 use std::path::Path;
 use std::sync::Arc;
 

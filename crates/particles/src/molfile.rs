@@ -1,18 +1,13 @@
 //! Reads MDL molfiles and SDF, versions V2000 and V3000: molecules, one frame each, in angstrom ("CT file
 //! Formats", BIOVIA 2020).
 
-use super::bonds::{Bonds, Listed, row_from_one};
-use super::builder::Builder;
-use super::fields::{Fields, fixed};
-use super::format::Format;
-use super::frame::{LengthUnit, ParticleFrame};
-use super::frame_reader::FrameReader;
-use super::lines::{Line, Lines};
-use super::number;
-use super::options::ReadOptions;
-use super::schema::Schema;
-use super::source::Source;
-use crate::FileError;
+use crate::bonds::{Listed, row_from_one};
+use crate::fields::{Fields, fixed};
+use crate::lines::{Line, Lines};
+use crate::{
+    Bonds, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
+    frame_reader::FrameReader, number, schema::Schema, source::Source,
+};
 use std::sync::Arc;
 
 /// Names of the columns.

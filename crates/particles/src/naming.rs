@@ -1,9 +1,7 @@
 //! Derives elements from type names.
 
-use super::categories::{Kind, Kinds};
-use super::element::{Element, is_virtual_site, of_atom_name};
-use super::number;
-use super::schema::Naming;
+use crate::element::{is_virtual_site, of_atom_name};
+use crate::{Element, Kind, Kinds, number, schema::Naming};
 
 /// Fraction of particles without an element above which names are not read as elements.
 const NO_SYMBOLS: f64 = 0.5;

@@ -4,9 +4,7 @@
 //! The bins divide the edges of the cell evenly, or those of the box of all points along edges that
 //! aren't periodic. All periodic images within the distance are found, however small the cell.
 
-use crate::ParticleFrame;
-use crate::cell::Cell;
-use crate::memory;
+use crate::{Cell, ParticleFrame, memory};
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 

@@ -1,11 +1,6 @@
 //! Options of readers: columns, frame, radii.
 
-use super::bonds::BondSource;
-use super::format::Format;
-use super::progress::ReadProgress;
-use super::role::Role;
-use super::superposition::AlignBy;
-use crate::suggest;
+use crate::{AlignBy, BondSource, Format, ReadProgress, Role, suggest};
 use std::path::PathBuf;
 use std::str::FromStr;
 

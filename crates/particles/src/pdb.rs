@@ -5,25 +5,17 @@
 //! simulations (serial numbers in hexadecimal, hybrid-36 or asterisks). This reader doesn't parse
 //! numbers that aren't needed.
 
-use super::alternates::{AlternateAtom, Alternates};
-use super::bonds::{Bonds, Listed, unknown};
-use super::builder::Builder;
-use super::categories::Kind;
-use super::cell::Cell;
-use super::element::{Element, is_virtual_site, of_aligned_name};
-use super::fields::fixed;
-use super::format::Format;
-use super::frame::{LengthUnit, ParticleFrame};
-use super::frame_reader::FrameReader;
-use super::lines::{Line, Lines};
-use super::number;
-use super::options::ReadOptions;
-use super::progress::ReadProgress;
-use super::role::Role;
-use super::schema::{Naming, Schema, Slot};
-use super::source::{Source, is_standard_input};
-use super::undrawn::Undrawn;
-use crate::FileError;
+use crate::alternates::{AlternateAtom, Alternates};
+use crate::bonds::{Listed, unknown};
+use crate::element::{is_virtual_site, of_aligned_name};
+use crate::lines::{Line, Lines};
+use crate::schema::{Naming, Schema, Slot};
+use crate::source::{Source, is_standard_input};
+use crate::{
+    Bonds, Cell, Element, FileError, Format, Kind, LengthUnit, ParticleFrame, ReadOptions,
+    ReadProgress, Role, builder::Builder, fields::fixed, frame_reader::FrameReader, number,
+    undrawn::Undrawn,
+};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::sync::Arc;

@@ -3,19 +3,13 @@
 //! The crates `ply-rs` and `ply-rs-bw` aren't used: they store a map of values for each vertex. This
 //! reader stores the vertices in columns, and ignores the elements after them.
 
-use super::builder::Builder;
-use super::fields::Fields;
-use super::format::Format;
-use super::frame::ParticleFrame;
-use super::frame_reader::FrameReader;
-use super::lines::{Line, Lines};
-use super::options::ReadOptions;
-use super::scalar::{Order, Scalar};
-use super::schema::{Schema, Slot};
-use super::source::Source;
-use super::undrawn::Undrawn;
-use crate::FileError;
-use crate::srgb::linear_from_srgb;
+use crate::lines::{Line, Lines};
+use crate::scalar::{Order, Scalar};
+use crate::schema::{Schema, Slot};
+use crate::{
+    FileError, Format, ParticleFrame, ReadOptions, builder::Builder, fields::Fields,
+    frame_reader::FrameReader, source::Source, srgb::linear_from_srgb, undrawn::Undrawn,
+};
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::Path;
 use std::sync::Arc;

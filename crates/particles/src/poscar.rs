@@ -1,19 +1,12 @@
 //! Reads POSCAR, CONTCAR and XDATCAR of VASP, in angstrom (vasp.at/wiki/index.php/POSCAR). XDATCAR has several
 //! frames, whose cell may change.
 
-use super::builder::Builder;
-use super::cell::Cell;
-use super::element::Element;
-use super::fields::Fields;
-use super::format::Format;
-use super::frame::{LengthUnit, ParticleFrame};
-use super::frame_reader::FrameReader;
-use super::lines::{Line, Lines};
-use super::number;
-use super::options::ReadOptions;
-use super::schema::{Naming, Schema, Slot};
-use super::source::Source;
-use crate::FileError;
+use crate::lines::{Line, Lines};
+use crate::schema::{Naming, Schema, Slot};
+use crate::{
+    Cell, Element, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
+    fields::Fields, frame_reader::FrameReader, number, source::Source,
+};
 use glam::DVec3;
 use std::sync::Arc;
 

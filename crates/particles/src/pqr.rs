@@ -1,17 +1,12 @@
 //! Reads PQR of PDB2PQR, APBS and `MDAnalysis`: rows of PDB whose fields are separated by blanks, with a charge
 //! and a radius in angstrom (apbs.readthedocs.io/en/latest/formats/pqr.html).
 
-use super::builder::Builder;
-use super::fields::Fields;
-use super::format::Format;
-use super::frame::{LengthUnit, ParticleFrame};
-use super::frame_reader::FrameReader;
-use super::lines::{Line, Lines};
-use super::number;
-use super::options::ReadOptions;
-use super::schema::{Naming, Schema, Slot};
-use super::source::Source;
-use crate::FileError;
+use crate::lines::{Line, Lines};
+use crate::schema::{Naming, Schema, Slot};
+use crate::{
+    FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder, fields::Fields,
+    frame_reader::FrameReader, number, source::Source,
+};
 use std::path::Path;
 use std::sync::Arc;
 

@@ -1,21 +1,14 @@
 //! Reads PSF, topologies of CHARMM, NAMD and X-PLOR: what the atoms of a trajectory are
 //! (charmm-gui.org/charmmdoc/struct.html). They have no positions: those of the frame are NaN.
 
-use super::bonds::{Bonds, Listed, row_from_one};
-use super::builder::Builder;
-use super::categories::Kind;
-use super::element::{Element, is_virtual_site};
-use super::fields::Fields;
-use super::format::Format;
-use super::frame::ParticleFrame;
-use super::frame_reader::FrameReader;
-use super::lines::{Line, Lines};
-use super::naming;
-use super::number;
-use super::options::ReadOptions;
-use super::schema::{Naming, Schema, Slot};
-use super::source::Source;
-use crate::FileError;
+use crate::bonds::{Listed, row_from_one};
+use crate::lines::{Line, Lines};
+use crate::schema::{Naming, Schema, Slot};
+use crate::{
+    Bonds, Element, FileError, Format, Kind, ParticleFrame, ReadOptions, builder::Builder,
+    element::is_virtual_site, fields::Fields, frame_reader::FrameReader, naming, number,
+    source::Source,
+};
 use std::sync::Arc;
 
 /// Names of the columns, of which the last three are not in the file.

@@ -1,23 +1,12 @@
 //! Reads the frames of a file, one after another.
 
-use super::bonds::BondSource;
-use super::derived::Derived;
-use super::format::Format;
-use super::frame::ParticleFrame;
-use super::frame_reader::FrameReader;
-use super::ids;
-use super::options::{FrameChoice, ReadOptions};
-use super::shapes::ShapeColumns;
-use super::smoothing::Window;
-use super::source::{Source, is_standard_input};
-use super::superposition::{AlignBy, Reference};
-use super::topology::Joined;
-use super::trails::History;
-use super::{
-    cfg, cif, csv, dcd, gro, gromacs, gsd, hdf5, lammps, mol2, molfile, netcdf, numpy, pdb, ply,
-    poscar, pqr, psf, sniff, text, xsf, xyz,
+use crate::source::{Source, is_standard_input};
+use crate::{
+    AlignBy, BondSource, FileError, Format, FrameChoice, ParticleFrame, ReadOptions, cfg, cif, csv,
+    dcd, derived::Derived, frame_reader::FrameReader, gro, gromacs, gsd, hdf5, ids, lammps, mol2,
+    molfile, netcdf, numpy, pdb, ply, poscar, pqr, psf, shapes::ShapeColumns, smoothing::Window,
+    sniff, superposition::Reference, text, topology::Joined, trails::History, xsf, xyz,
 };
-use crate::FileError;
 use std::path::{Path, PathBuf};
 
 /// The frames of a file of particles, read one at a time. After an error there are no more.

@@ -1,11 +1,6 @@
 //! Roles of a file's columns.
 
-use super::aliases;
-use super::frame::LengthUnit;
-use super::options::{Radii, ReadOptions};
-use super::role::Role;
-use super::units;
-use crate::suggest;
+use crate::{LengthUnit, Radii, ReadOptions, Role, aliases, suggest, units};
 use std::collections::HashSet;
 
 /// The use of a column.

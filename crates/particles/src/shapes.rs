@@ -1,10 +1,6 @@
 //! Shapes of particles: ellipsoids and their orientations, from columns of files.
 
-use super::format::Format;
-use super::frame::{ParticleFrame, Shapes};
-use super::memory;
-use super::options::{Columns, Radii, ReadOptions};
-use super::role::Role;
+use crate::{Columns, Format, ParticleFrame, Radii, ReadOptions, Role, Shapes, memory};
 use glam::{DQuat, DVec3};
 
 /// Names of columns of semi-axes.

@@ -1,7 +1,6 @@
 //! Common tables of types and texts for all frames of a file.
 
-use super::categories::{Codes, Kind, Kinds};
-use super::frame::ParticleFrame;
+use crate::{Codes, Kind, Kinds, ParticleFrame};
 use std::collections::HashMap;
 use std::hash::Hash;
 

@@ -1,10 +1,6 @@
 //! Smoothing of trajectories: the mean of the positions in frames around each one.
 
-use super::frame::ParticleFrame;
-use super::frame_reader::FrameReader;
-use super::ids;
-use crate::FileError;
-use crate::bonds::nearest_image;
+use crate::{FileError, ParticleFrame, bonds::nearest_image, frame_reader::FrameReader, ids};
 use glam::DVec3;
 use std::collections::VecDeque;
 use std::path::Path;

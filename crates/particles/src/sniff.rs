@@ -1,16 +1,11 @@
 //! Detects the format of a file from its first bytes and lines.
 
-use super::fields::Fields;
-use super::foreign::{self, Foreign};
-use super::format::Format;
-use super::options::ReadOptions;
-use super::role::Role;
-use super::source::Source;
-use super::{
-    cfg, cif, dcd, gro, gromacs, gsd, hdf5, header, line, mol2, molfile, netcdf, number, numpy,
-    pdb, ply, poscar, pqr, psf, units, utf16, xsf,
+use crate::foreign::{self, Foreign};
+use crate::{
+    FileError, Format, ReadOptions, Role, cfg, cif, dcd, fields::Fields, gro, gromacs, gsd, hdf5,
+    header, line, mol2, molfile, netcdf, number, numpy, pdb, ply, poscar, pqr, psf, source::Source,
+    units, utf16, xsf,
 };
-use crate::FileError;
 
 /// Help that lists the formats that can be detected.
 const KNOWN: &str = "files of particles are rows of `x y z [radius]`, tables with a header that \

@@ -4,10 +4,8 @@
 //! The compression format is detected by magic number; the file name is ignored. All decoders are
 //! written in Rust, so the program needs no system library.
 
-use super::line;
-use super::progress::{CountedFile, ReadProgress};
-use super::utf16::{self, Utf16};
-use crate::FileError;
+use crate::utf16::{self, Utf16};
+use crate::{FileError, ReadProgress, line, progress::CountedFile};
 use flate2::read::MultiGzDecoder;
 use lzma_rust2::XzReader;
 use ruzstd::decoding::errors::{FrameDecoderError, ReadFrameHeaderError};

@@ -2,8 +2,7 @@
 //! frame (Horn, "Closed-form solution of absolute orientation using unit quaternions", Journal of the Optical
 //! Society of America A4, 1987), as the algorithm of Kabsch finds it.
 
-use super::aliases;
-use super::frame::ParticleFrame;
+use crate::{ParticleFrame, aliases};
 use glam::{DMat3, DQuat, DVec3};
 use std::fmt;
 use std::sync::Arc;

@@ -1,15 +1,10 @@
 //! Reads rows of numbers, without a header or with one of blank-separated names.
 
-use super::builder::Builder;
-use super::fields::Fields;
-use super::format::Format;
-use super::frame::ParticleFrame;
-use super::frame_reader::FrameReader;
-use super::lines::{Line, Lines};
-use super::options::ReadOptions;
-use super::schema::Schema;
-use super::{header, line, number, source::Source, units};
-use crate::FileError;
+use crate::lines::{Line, Lines};
+use crate::{
+    FileError, Format, ParticleFrame, ReadOptions, builder::Builder, fields::Fields,
+    frame_reader::FrameReader, header, line, number, schema::Schema, source::Source, units,
+};
 use std::collections::HashMap;
 use std::sync::Arc;
 

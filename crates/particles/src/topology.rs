@@ -1,16 +1,10 @@
 //! Frames of a trajectory whose particles another file names.
 
-use super::aliases;
-use super::bonds::{BondSource, Bonds};
-use super::error::clipped;
-use super::frame::ParticleFrame;
-use super::frame_reader::FrameReader;
-use super::ids::{self, ID, is_id};
-use super::options::{Columns, Radii, ReadOptions};
-use super::reader;
-use super::role::Role;
-use super::schema::unknown_column;
-use crate::FileError;
+use crate::ids::{self, ID, is_id};
+use crate::{
+    BondSource, Bonds, Columns, FileError, ParticleFrame, Radii, ReadOptions, Role, aliases,
+    error::clipped, frame_reader::FrameReader, reader, schema::unknown_column,
+};
 use std::path::{Path, PathBuf};
 
 /// Columns that change from frame to frame, besides positions.

@@ -1,9 +1,6 @@
 //! Trails of trajectories: where particles were in the frames before.
 
-use super::bonds::nearest_image;
-use super::frame::{ParticleFrame, Trails};
-use super::memory;
-use crate::FileError;
+use crate::{FileError, ParticleFrame, Trails, bonds::nearest_image, memory};
 use glam::DVec3;
 use std::collections::VecDeque;
 use std::path::Path;

@@ -1,7 +1,6 @@
 //! Warnings about contents of a file that are not drawn as spheres, one for each kind.
 
-use super::frame::ParticleFrame;
-use crate::error::listed;
+use crate::{ParticleFrame, error::listed};
 
 /// A kind of content that is not drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,16 +1,9 @@
 //! Reads XSF and AXSF of XCrySDen, in angstrom (xcrysden.org/doc/XSF.html). Grids of data are passed over.
 
-use super::builder::Builder;
-use super::cell::Cell;
-use super::format::Format;
-use super::frame::{LengthUnit, ParticleFrame};
-use super::frame_reader::FrameReader;
-use super::lines::Lines;
-use super::number;
-use super::options::ReadOptions;
-use super::schema::Schema;
-use super::source::Source;
-use crate::FileError;
+use crate::{
+    Cell, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
+    frame_reader::FrameReader, lines::Lines, number, schema::Schema, source::Source,
+};
 use glam::DVec3;
 use std::sync::Arc;
 

@@ -4,17 +4,12 @@
 //! has pairs `key=value` (github.com/libAtoms/extxyz); `Lattice`, `Origin`, `pbc` and `Properties` are
 //! read.
 
-use super::builder::Builder;
-use super::cell::Cell;
-use super::format::Format;
-use super::frame::{LengthUnit, ParticleFrame};
-use super::frame_reader::FrameReader;
-use super::lines::{Line, Lines};
-use super::options::{ReadOptions, component_names};
-use super::role::Role;
-use super::schema::{Naming, Schema};
-use super::{number, source::Source};
-use crate::FileError;
+use crate::lines::{Line, Lines};
+use crate::schema::{Naming, Schema};
+use crate::{
+    Cell, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, Role, builder::Builder,
+    frame_reader::FrameReader, number, options::component_names, source::Source,
+};
 use glam::DVec3;
 use std::sync::Arc;
 

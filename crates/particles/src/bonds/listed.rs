@@ -1,10 +1,8 @@
 //! Bonds as files list them: by the numbers of atoms, which become rows.
 
 use super::{Bond, Bonds, ordered};
-use crate::FileError;
-use crate::categories::{Codebook, TextColumn, add};
-use crate::line::Line;
-use crate::memory;
+use crate::categories::{Codebook, add};
+use crate::{FileError, TextColumn, line::Line, memory};
 use std::collections::HashMap;
 use std::path::Path;
 

@@ -1,9 +1,6 @@
 //! Rules for bonds: where they come from, and how far bonded particles may be apart.
 
-use crate::ParticleFrame;
-use crate::categories::Kind;
-use crate::error::clipped;
-use crate::suggest;
+use crate::{Kind, ParticleFrame, error::clipped, suggest};
 use std::str::FromStr;
 
 /// Tolerance of the sum of two covalent radii in angstrom, and the least length of a bond, as in Open

@@ -3,10 +3,7 @@
 
 use super::rows::Rows;
 use super::tokens::{Token, Tokens};
-use crate::FileError;
-use crate::bonds::{Bonds, Listed};
-use crate::frame::ParticleFrame;
-use crate::line::Line;
+use crate::{Bonds, FileError, ParticleFrame, bonds::Listed, line::Line};
 use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;

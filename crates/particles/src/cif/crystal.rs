@@ -8,22 +8,11 @@ use super::occupancy::{Occupancies, Positions};
 use super::rows::Rows;
 use super::symmetry::{Operation, images};
 use super::tokens::{Token, Tokens};
-use crate::bonds::Bonds;
-use crate::builder::Builder;
-use crate::cell::Cell;
-use crate::element::Element;
-use crate::format::Format;
-use crate::frame::{LengthUnit, ParticleFrame};
-use crate::frame_reader::FrameReader;
-use crate::lines::Lines;
-use crate::memory;
-use crate::number;
-use crate::options::ReadOptions;
-use crate::role::Role;
-use crate::schema::Schema;
-use crate::source::Source;
-use crate::undrawn::Undrawn;
-use crate::{FileError, Rgb};
+use crate::{
+    Bonds, Cell, Element, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, Rgb, Role,
+    builder::Builder, frame_reader::FrameReader, lines::Lines, memory, number, schema::Schema,
+    source::Source, undrawn::Undrawn,
+};
 use glam::DVec3;
 use memchr::memmem;
 use std::collections::HashMap;

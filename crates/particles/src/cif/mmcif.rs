@@ -3,20 +3,12 @@
 use super::connections::{self, Atoms, Connections};
 use super::rows::Rows;
 use super::tokens::{Token, Tokens};
-use crate::FileError;
 use crate::alternates::{AlternateAtom, Alternates};
-use crate::bonds::Bonds;
-use crate::builder::Builder;
-use crate::cell::Cell;
-use crate::format::Format;
-use crate::frame::{LengthUnit, ParticleFrame};
-use crate::frame_reader::FrameReader;
-use crate::lines::Lines;
-use crate::number;
-use crate::options::ReadOptions;
-use crate::schema::Schema;
-use crate::source::Source;
-use crate::undrawn::Undrawn;
+use crate::{
+    Bonds, Cell, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
+    frame_reader::FrameReader, lines::Lines, number, schema::Schema, source::Source,
+    undrawn::Undrawn,
+};
 use std::sync::Arc;
 
 /// Prefix of the columns.

@@ -4,8 +4,7 @@
 use super::crystal::strip_uncertainty;
 use super::rows::Rows;
 use super::symmetry::{SAME, distance};
-use crate::cell::Cell;
-use crate::number;
+use crate::{Cell, number};
 use glam::DVec3;
 use std::collections::HashMap;
 

@@ -1,7 +1,6 @@
 //! Symmetry operations in the notation of CIF: `-x+y, y+1/2, z`.
 
-use crate::cell::Cell;
-use crate::number;
+use crate::{Cell, number};
 use glam::{DMat3, DVec3};
 
 /// Distance in angstrom below which images of an atom coincide: coordinates of special positions have

@@ -9,11 +9,7 @@ pub(crate) use bonds::{Bond, ordered};
 pub use shapes::Shapes;
 pub use trails::Trails;
 
-use crate::Rgb;
-use crate::categories::{Kinds, RowChange, TextColumn};
-use crate::cell::Cell;
-use crate::format::Format;
-use crate::role::Role;
+use crate::{Cell, Format, Kinds, Rgb, Role, TextColumn, categories::RowChange};
 use glam::{DMat3, DVec3};
 
 /// The particles of one frame, with the frame's metadata. Row `i` of every column belongs to

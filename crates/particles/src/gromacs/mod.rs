@@ -8,8 +8,7 @@ mod xtc;
 pub(crate) use trr::{Trr, is_trr};
 pub(crate) use xtc::{Xtc, is_xtc};
 
-use super::cell::Cell;
-use crate::FileError;
+use crate::{Cell, FileError};
 use glam::DVec3;
 
 /// Returns the cell whose edges are rows of a matrix; none if they are zero.

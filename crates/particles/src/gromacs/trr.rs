@@ -1,16 +1,12 @@
 //! Reads TRR: positions, velocities and forces in single or double precision. Frames without positions, which
 //! a simulation may write at other intervals, are passed over.
 
-use crate::FileError;
 use crate::binary::{BinaryFile, Numbers};
-use crate::builder::Builder;
-use crate::format::Format;
-use crate::frame::{LengthUnit, ParticleFrame};
-use crate::frame_reader::FrameReader;
-use crate::options::ReadOptions;
 use crate::scalar::{Order, Scalar};
-use crate::schema::Schema;
-use crate::source::Source;
+use crate::{
+    FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
+    frame_reader::FrameReader, schema::Schema, source::Source,
+};
 use std::sync::Arc;
 
 /// The beginning of every frame: magic number, length of a text with its end and without, and the text.

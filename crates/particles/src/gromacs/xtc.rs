@@ -3,16 +3,12 @@
 //! The crate `molly` isn't used: it panics on malformed files.
 
 use super::compressed::{self, Fault, Packing};
-use crate::FileError;
 use crate::binary::{BinaryFile, Numbers};
-use crate::builder::Builder;
-use crate::format::Format;
-use crate::frame::{LengthUnit, ParticleFrame};
-use crate::frame_reader::FrameReader;
-use crate::options::ReadOptions;
 use crate::scalar::{Order, Scalar};
-use crate::schema::Schema;
-use crate::source::Source;
+use crate::{
+    FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
+    frame_reader::FrameReader, schema::Schema, source::Source,
+};
 use std::sync::Arc;
 
 /// Magic numbers: with lengths of 32 bits, and, in frames of more than 298 million atoms, of 64 bits.

@@ -1,8 +1,7 @@
 //! The GSD container: named chunks of numbers with an index (gsd.readthedocs.io, "File layer").
 
-use crate::FileError;
-use crate::binary::BinaryFile;
 use crate::scalar::{Order, Scalar};
+use crate::{FileError, binary::BinaryFile};
 use std::collections::{BTreeMap, HashMap};
 
 /// Magic number of a file.

@@ -8,21 +8,12 @@ mod file;
 pub(super) use file::MAGIC;
 
 use self::file::File;
-use super::aliases;
-use super::bonds::{Bonds, Listed};
-use super::categories::Kind;
-use super::cell::Cell;
-use super::format::Format;
-use super::frame::{NumberColumn, ParticleFrame};
-use super::frame_reader::FrameReader;
-use super::options::{Radii, ReadOptions, component_names};
-use super::role::Role;
-use super::schema::unknown_column;
-use super::shapes::SEMI_AXES;
-use super::source::Source;
-use super::undrawn::Undrawn;
-use crate::FileError;
-use crate::binary::BinaryFile;
+use crate::{
+    Bonds, Cell, FileError, Format, Kind, NumberColumn, ParticleFrame, Radii, ReadOptions, Role,
+    aliases, binary::BinaryFile, bonds::Listed, frame_reader::FrameReader,
+    options::component_names, schema::unknown_column, shapes::SEMI_AXES, source::Source,
+    undrawn::Undrawn,
+};
 use glam::DVec3;
 use std::path::Path;
 use std::sync::Arc;

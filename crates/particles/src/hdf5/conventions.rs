@@ -3,11 +3,7 @@
 
 use super::dataset::{Dataset, Datatype, Values};
 use super::file::File;
-use crate::FileError;
-use crate::cell::Cell;
-use crate::frame::LengthUnit;
-use crate::netcdf;
-use crate::options::component_names;
+use crate::{Cell, FileError, LengthUnit, netcdf, options::component_names};
 use glam::DVec3;
 use std::sync::Arc;
 

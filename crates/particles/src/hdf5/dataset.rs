@@ -3,9 +3,8 @@
 use super::file::{ATTRIBUTE, DATASPACE, DATATYPE, FILTERS, Fields, File, LAYOUT, Message};
 use super::index::{Chunks, Index};
 use super::tree::Chunk;
-use crate::FileError;
-use crate::memory;
 use crate::scalar::{Order, Scalar};
+use crate::{FileError, memory};
 use flate2::read::ZlibDecoder;
 use std::collections::BTreeMap;
 use std::io::Read;

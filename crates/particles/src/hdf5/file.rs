@@ -4,8 +4,7 @@
 //! take no more bytes than a multiple of the file: loops of references end there.
 
 use super::tree;
-use crate::FileError;
-use crate::binary::BinaryFile;
+use crate::{FileError, binary::BinaryFile};
 use std::collections::VecDeque;
 
 /// Beginning of a file.

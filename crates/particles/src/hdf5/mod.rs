@@ -20,18 +20,12 @@ pub(crate) use self::file::MAGIC;
 use self::conventions::{Part, Trajectory};
 use self::dataset::Datatype;
 use self::file::File;
-use super::binary::BinaryFile;
-use super::builder::Builder;
-use super::foreign;
-use super::format::Format;
-use super::frame::ParticleFrame;
-use super::frame_reader::FrameReader;
-use super::options::ReadOptions;
-use super::role::Role;
-use super::scalar::{Order, Scalar};
-use super::schema::{Naming, Schema, Slot};
-use super::source::Source;
-use crate::FileError;
+use crate::scalar::{Order, Scalar};
+use crate::schema::{Naming, Schema, Slot};
+use crate::{
+    FileError, Format, ParticleFrame, ReadOptions, Role, binary::BinaryFile, builder::Builder,
+    foreign, frame_reader::FrameReader, source::Source,
+};
 use std::collections::HashSet;
 use std::sync::Arc;
 

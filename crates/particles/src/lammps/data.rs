@@ -4,22 +4,14 @@ use super::bounds::tilted;
 use super::style::{self, Chosen, Facts, Layout, Sample};
 use super::unit;
 use super::velocities::{self, Velocities};
-use crate::FileError;
-use crate::bonds::{Bonds, Listed, Numbering};
-use crate::builder::Builder;
-use crate::cell::Cell;
-use crate::element::Element;
-use crate::fields::Fields;
-use crate::format::Format;
-use crate::frame::{LengthUnit, NumberColumn, ParticleFrame};
-use crate::frame_reader::FrameReader;
+use crate::bonds::{Listed, Numbering};
 use crate::lines::{Line, Lines};
 use crate::naming::{drop_uncertain_elements, kind};
-use crate::number;
-use crate::options::ReadOptions;
-use crate::role::Role;
 use crate::schema::{Naming, Schema};
-use crate::source::Source;
+use crate::{
+    Bonds, Cell, Element, FileError, Format, LengthUnit, NumberColumn, ParticleFrame, ReadOptions,
+    Role, builder::Builder, fields::Fields, frame_reader::FrameReader, number, source::Source,
+};
 use glam::DVec3;
 use std::collections::HashMap;
 use std::sync::Arc;

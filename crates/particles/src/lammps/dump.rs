@@ -2,17 +2,11 @@
 
 use super::bounds::{tilted, tilted_from_bounds};
 use super::unit;
-use crate::FileError;
-use crate::builder::Builder;
-use crate::cell::Cell;
-use crate::format::Format;
-use crate::frame::{LengthUnit, ParticleFrame};
-use crate::frame_reader::FrameReader;
 use crate::lines::{Line, Lines};
-use crate::options::ReadOptions;
-use crate::role::Role;
-use crate::schema::Schema;
-use crate::source::Source;
+use crate::{
+    Cell, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, Role, builder::Builder,
+    frame_reader::FrameReader, schema::Schema, source::Source,
+};
 use glam::DVec3;
 use std::sync::Arc;
 

@@ -9,8 +9,7 @@ mod velocities;
 pub(super) use data::Data;
 pub(super) use dump::Dump;
 
-use super::frame::LengthUnit;
-use super::undrawn::Undrawn;
+use crate::{LengthUnit, undrawn::Undrawn};
 
 /// Returns the kind of object that a section of a data file lists, if it is not drawn.
 fn undrawn(section: &str) -> Option<Undrawn> {

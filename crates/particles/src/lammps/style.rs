@@ -1,8 +1,7 @@
 //! Atom styles: the columns of the section `Atoms` of a LAMMPS data file
 //! (<https://docs.lammps.org/read_data.html>).
 
-use crate::cell::Cell;
-use crate::number;
+use crate::{Cell, number};
 use glam::{DMat3, DVec3};
 use std::collections::{HashMap, HashSet};
 

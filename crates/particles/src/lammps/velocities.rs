@@ -1,10 +1,8 @@
 //! The section `Velocities` of a data file: rows in arbitrary order, identified by ids
 //! (<https://docs.lammps.org/read_data.html>).
 
-use crate::FileError;
-use crate::frame::{NumberColumn, ParticleFrame};
 use crate::lines::{Line, Lines};
-use crate::options::ReadOptions;
+use crate::{FileError, NumberColumn, ParticleFrame, ReadOptions};
 use std::collections::HashMap;
 
 /// Names of its columns after the id; further columns of some atom styles are ignored.

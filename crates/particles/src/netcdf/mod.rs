@@ -4,17 +4,12 @@
 mod header;
 
 use self::header::{Header, Variable, text};
-use super::binary::{BinaryFile, Numbers};
-use super::builder::Builder;
-use super::cell::Cell;
-use super::format::Format;
-use super::frame::{LengthUnit, ParticleFrame};
-use super::frame_reader::FrameReader;
-use super::options::{ReadOptions, component_names};
-use super::scalar::{Order, Scalar};
-use super::schema::Schema;
-use super::source::Source;
-use crate::FileError;
+use crate::binary::{BinaryFile, Numbers};
+use crate::scalar::{Order, Scalar};
+use crate::{
+    Cell, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
+    frame_reader::FrameReader, options::component_names, schema::Schema, source::Source,
+};
 use glam::DVec3;
 use std::sync::Arc;
 

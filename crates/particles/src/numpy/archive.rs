@@ -3,16 +3,12 @@
 use super::array::{Array, Transpose};
 use super::schema;
 use crate::builder::{Builder, clamp_channel};
-use crate::categories::{Codebook, Kind, TextColumn, add};
-use crate::format::Format;
-use crate::frame::{NumberColumn, ParticleFrame};
-use crate::frame_reader::FrameReader;
-use crate::options::{Radii, ReadOptions, component_names};
-use crate::progress::CountedFile;
-use crate::role::Role;
-use crate::schema::Schema;
-use crate::source::Source;
-use crate::{FileError, Rgb};
+use crate::categories::{Codebook, add};
+use crate::{
+    FileError, Format, Kind, NumberColumn, ParticleFrame, Radii, ReadOptions, Rgb, Role,
+    TextColumn, frame_reader::FrameReader, options::component_names, progress::CountedFile,
+    schema::Schema, source::Source,
+};
 use std::io::BufReader;
 use std::path::Path;
 use std::sync::Arc;

@@ -11,14 +11,11 @@ mod rest;
 pub(super) use archive::Npz;
 
 use self::array::{Array, Transpose};
-use super::builder::Builder;
-use super::format::Format;
-use super::frame::ParticleFrame;
-use super::frame_reader::FrameReader;
-use super::options::ReadOptions;
-use super::schema::{Schema, Slot};
-use super::source::Source;
-use crate::FileError;
+use crate::schema::{Schema, Slot};
+use crate::{
+    FileError, Format, ParticleFrame, ReadOptions, builder::Builder, frame_reader::FrameReader,
+    source::Source,
+};
 use std::io::{Cursor, Read};
 use std::path::Path;
 use std::sync::Arc;

@@ -2,11 +2,7 @@
 
 use super::archive::Npz;
 use super::array::Transpose;
-use crate::FileError;
-use crate::cell::Cell;
-use crate::frame::ParticleFrame;
-use crate::gsd;
-use crate::undrawn::Undrawn;
+use crate::{Cell, FileError, ParticleFrame, gsd, undrawn::Undrawn};
 use glam::DVec3;
 
 /// Names of arrays that hold the cell.
