@@ -94,19 +94,11 @@ fn structured(head: &[u8]) -> Option<Format> {
 }
 
 fn binary(head: &[u8]) -> Option<Format> {
-    if head.starts_with(&gsd::MAGIC) {
-        return Some(Format::Gsd);
-    }
-    if head.starts_with(hdf5::MAGIC) {
-        return Some(Format::Hdf5);
-    }
-    if head.starts_with(numpy::MAGIC) {
-        return Some(Format::Npy);
-    }
-    if head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06") {
-        return Some(Format::Npz);
-    }
-    let signatures: [(Test, Format); 5] = [
+    let signatures: [(Test, Format); 9] = [
+        (|head| head.starts_with(&gsd::MAGIC), Format::Gsd),
+        (|head| head.starts_with(hdf5::MAGIC), Format::Hdf5),
+        (|head| head.starts_with(numpy::MAGIC), Format::Npy),
+        (|head| head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06"), Format::Npz),
         (ply::is_ply, Format::Ply),
         (dcd::is_dcd, Format::Dcd),
         (gromacs::is_xtc, Format::Xtc),

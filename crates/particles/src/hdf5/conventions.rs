@@ -23,6 +23,7 @@ const VECTORS: [(&str, [&str; 3]); 8] = [
 ];
 
 /// A file's particles and their frames.
+#[derive(Default)]
 pub(super) struct Trajectory {
     pub(super) parts: Vec<Part>,
     /// Name of the column of the parts' names; none if there is one part alone.
@@ -59,15 +60,21 @@ pub(super) struct Element {
 }
 
 /// Steps or times of rows.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) enum Axis {
+    #[default]
     Unknown,
-    Even { first: f64, by: f64 },
+    Even {
+        first: f64,
+        by: f64,
+    },
     Listed(Arc<Vec<f64>>),
 }
 
 /// Source of the cell.
+#[derive(Default)]
 pub(super) enum CellSource {
+    #[default]
     None,
     Fixed(Cell),
     Edges {
@@ -263,7 +270,7 @@ fn h5md(file: &mut File, particles: u64) -> Result<Option<Trajectory>, FileError
         times,
         cell,
         unit,
-        warnings: Vec::new(),
+        ..Trajectory::default()
     }))
 }
 
@@ -334,11 +341,10 @@ fn gadget(
         parts: found,
         label: Some("type"),
         frames: 1,
-        steps: Axis::Unknown,
         times: time.map_or(Axis::Unknown, |time| Axis::Listed(Arc::new(vec![*time]))),
         cell: cell.map_or(CellSource::None, CellSource::Fixed),
-        unit: LengthUnit::Unknown,
         warnings,
+        ..Trajectory::default()
     }))
 }
 
@@ -376,13 +382,11 @@ fn amber(file: &mut File, links: &[(String, u64)]) -> Result<Option<Trajectory>,
     }
     Ok(Some(Trajectory {
         parts: vec![Part { name: String::new(), count, columns }],
-        label: None,
         frames,
-        steps: Axis::Unknown,
         times,
         cell,
         unit,
-        warnings: Vec::new(),
+        ..Trajectory::default()
     }))
 }
 

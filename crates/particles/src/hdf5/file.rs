@@ -174,6 +174,18 @@ impl File {
         self.values(at, length)
     }
 
+    /// Reads a structure at an address, and returns what `parse` makes of its fields; an error about `what` if it is not sound.
+    pub(super) fn parse<T>(
+        &mut self,
+        at: u64,
+        length: u64,
+        what: &str,
+        parse: impl FnOnce(&mut Fields) -> Option<T>,
+    ) -> Result<T, FileError> {
+        let bytes = self.bytes(at, length)?;
+        parse(&mut self.fields(&bytes)).ok_or_else(|| self.damaged(what))
+    }
+
     /// Reads up to this many bytes of a structure whose length its beginning tells.
     pub(super) fn head(&mut self, at: u64, length: u64) -> Result<Vec<u8>, FileError> {
         let end = self.content.length().saturating_sub(self.base);
@@ -319,26 +331,23 @@ impl File {
         links: &mut Vec<(String, Target)>,
     ) -> Result<(), FileError> {
         let (address, length) = (self.sizes.address, self.sizes.length);
-        let head = self.bytes(heap, (8 + 2 * length + address) as u64)?;
-        let mut fields = self.fields(&head);
-        let names = fields.signature(b"HEAP").and_then(|()| {
+        let head = (8 + 2 * length + address) as u64;
+        let (at, size) = self.parse(heap, head, "the names of a group", |fields| {
+            fields.signature(b"HEAP")?;
             fields.take(4)?;
             let size = fields.length()?;
             fields.length()?;
             Some((fields.address()??, size))
-        });
-        let (at, size) = names.ok_or_else(|| self.damaged("the names of a group"))?;
+        })?;
         let names = self.bytes(at, size)?;
         let mut nodes = Vec::new();
         tree::walk_groups(self, tree, &mut nodes)?;
         for node in nodes {
-            let head = self.bytes(node, 8)?;
-            let mut fields = self.fields(&head);
-            let count = fields.signature(b"SNOD").and_then(|()| {
+            let count = self.parse(node, 8, "a group", |fields| {
+                fields.signature(b"SNOD")?;
                 fields.take(2)?;
                 fields.number(2)
-            });
-            let count = count.ok_or_else(|| self.damaged("a group"))?;
+            })?;
             let entry = 2 * address + 24;
             let entries = self.bytes(node.saturating_add(8), count * entry as u64)?;
             for entry in entries.chunks_exact(entry) {
@@ -401,13 +410,11 @@ impl File {
             return Ok(String::new());
         }
         let size = self.sizes.length;
-        let head = self.bytes(heap, 8 + size as u64)?;
-        let mut fields = self.fields(&head);
-        let held = fields.signature(b"GCOL").and_then(|()| {
+        let held = self.parse(heap, 8 + size as u64, "a text", |fields| {
+            fields.signature(b"GCOL")?;
             fields.take(4)?;
             fields.length()
-        });
-        let held = held.ok_or_else(|| self.damaged("a text"))?;
+        })?;
         let collection = self.bytes(heap, held)?;
         let mut fields = self.fields(collection.get(8 + size..).unwrap_or_default());
         while let Some(own) = fields.number(2).filter(|&own| own > 0) {

@@ -22,14 +22,12 @@ struct Node {
 
 fn node(file: &mut File, at: u64, kind: u8, key: usize) -> Result<Node, FileError> {
     let address = file.sizes.address;
-    let head = file.bytes(at, 8)?;
-    let mut fields = file.fields(&head);
-    let parsed = fields.signature(b"TREE").and_then(|()| {
+    let (level, count) = file.parse(at, 8, "a tree", |fields| {
+        fields.signature(b"TREE")?;
         let own = fields.byte()?;
         let (level, count) = (fields.byte()?, fields.number(2)?);
         (own == kind).then_some((level, count as usize))
-    });
-    let (level, count) = parsed.ok_or_else(|| file.damaged("a tree"))?;
+    })?;
     let at = at.saturating_add((8 + 2 * address) as u64);
     let entries = file.bytes(at, (count * (key + address) + key) as u64)?;
     Ok(Node { level, count, entries })
@@ -117,9 +115,9 @@ struct Level {
 /// Returns all records of a tree of version 2.
 pub(super) fn records(file: &mut File, at: u64) -> Result<Vec<Vec<u8>>, FileError> {
     let address = file.sizes.address;
-    let head = file.bytes(at, (16 + address + 2) as u64)?;
-    let mut fields = file.fields(&head);
-    let parsed = fields.signature(b"BTHD").and_then(|()| {
+    let head = (16 + address + 2) as u64;
+    let (size, record, depth, root, count) = file.parse(at, head, "a tree", |fields| {
+        fields.signature(b"BTHD")?;
         fields.take(2)?;
         let (node, record) = (fields.number(4)?, fields.number(2)?);
         let depth = fields.number(2)?;
@@ -133,8 +131,7 @@ pub(super) fn records(file: &mut File, at: u64) -> Result<Vec<Vec<u8>>, FileErro
             root,
             count,
         ))
-    });
-    let (size, record, depth, root, count) = parsed.ok_or_else(|| file.damaged("a tree"))?;
+    })?;
     let Some(root) = root else { return Ok(Vec::new()) };
     let levels = levels(size, record, depth, address).ok_or_else(|| file.damaged("a tree"))?;
     let bytes = |number: u64| (number.max(1).ilog2() / 8 + 1) as usize;
