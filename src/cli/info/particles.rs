@@ -66,7 +66,8 @@ impl ParticleInfo {
             frames: path.is_file().then(|| count_frames(path, options).ok()).flatten(),
             step: particles.frame.step,
             time: particles.frame.time,
-            unit: (particles.frame.unit != LengthUnit::Unknown).then(|| particles.frame.unit.name()),
+            unit: (particles.frame.unit != LengthUnit::Unknown)
+                .then(|| particles.frame.unit.name()),
             columns: particles.frame.columns.clone(),
             types: types
                 .map(|(kind, spheres)| TypeInfo {
