@@ -89,12 +89,6 @@ impl Format {
         ("psf", Self::Psf),
     ];
 
-    /// Returns whether files of this format are told by their first bytes alone.
-    pub(crate) fn has_magic(self) -> bool {
-        let arrays = matches!(self, Self::Gsd | Self::Ply | Self::Npy | Self::Npz);
-        arrays || self.lacks_names()
-    }
-
     /// Returns whether files of this format have positions alone, and a topology tells what they are of.
     pub(crate) fn lacks_names(self) -> bool {
         matches!(self, Self::Dcd | Self::Xtc | Self::Trr | Self::NetCdf | Self::Hdf5)

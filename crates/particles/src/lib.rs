@@ -49,6 +49,7 @@ mod extra;
 mod fields;
 mod foreign;
 mod format;
+mod formats;
 mod frame;
 mod frame_reader;
 mod gro;

@@ -155,7 +155,8 @@ impl FrameReader for Psf {
 }
 
 /// Returns whether the first line is `PSF` with flags, and a section with a title follows.
-pub(crate) fn is_psf(first: &[u8], head: &[u8]) -> bool {
+pub(crate) fn is_psf(head: &[u8]) -> bool {
+    let first = head.split(|&byte| byte == b'\n').next().unwrap_or_default().trim_ascii_end();
     let is_flag = |field: &[u8]| field.iter().all(u8::is_ascii_uppercase);
     first.starts_with(b"PSF")
         && Fields::blanks(first).all(is_flag)

@@ -2,10 +2,9 @@
 
 use crate::source::{Source, is_standard_input};
 use crate::{
-    AlignBy, BondSource, FileError, Format, FrameChoice, ParticleFrame, ReadOptions, cfg, cif, csv,
-    dcd, derived::Derived, frame_reader::FrameReader, gro, gromacs, gsd, hdf5, ids, lammps, mol2,
-    molfile, netcdf, numpy, pdb, ply, poscar, pqr, psf, shapes::ShapeColumns, smoothing::Window,
-    sniff, superposition::Reference, text, topology::Joined, trails::History, xsf, xyz,
+    AlignBy, BondSource, FileError, Format, FrameChoice, ParticleFrame, ReadOptions,
+    derived::Derived, formats, frame_reader::FrameReader, ids, shapes::ShapeColumns,
+    smoothing::Window, sniff, superposition::Reference, topology::Joined, trails::History,
 };
 use std::path::{Path, PathBuf};
 
@@ -214,33 +213,7 @@ pub(crate) fn open(
 ) -> Result<(Format, Box<dyn FrameReader>), FileError> {
     let source = Source::open(path, &options.progress)?;
     let format = sniff::format(&source, options)?;
-    let reader: Box<dyn FrameReader> = match format {
-        Format::Xyzr => Box::new(text::Rows::new(source, options)),
-        Format::Csv => Box::new(csv::Csv::new(source, options)),
-        Format::Xyz => Box::new(xyz::Xyz::new(source, options)),
-        Format::LammpsDump => Box::new(lammps::Dump::new(source, options)),
-        Format::LammpsData => Box::new(lammps::Data::new(source, options)),
-        Format::Gro => Box::new(gro::Gro::new(source, options)),
-        Format::Pdb => Box::new(pdb::Pdb::new(source, options)),
-        Format::MmCif => Box::new(cif::MmCif::new(source, options)),
-        Format::Cif => Box::new(cif::Crystal::new(source, options)),
-        Format::Gsd => Box::new(gsd::Gsd::new(source, options)?),
-        Format::Ply => Box::new(ply::Ply::new(source, options)),
-        Format::Npy => Box::new(numpy::Npy::new(source, options)?),
-        Format::Npz => Box::new(numpy::Npz::new(source, options)?),
-        Format::Dcd => Box::new(dcd::Dcd::new(source, options)?),
-        Format::Xtc => Box::new(gromacs::Xtc::new(source, options)?),
-        Format::Trr => Box::new(gromacs::Trr::new(source, options)?),
-        Format::NetCdf => Box::new(netcdf::NetCdf::new(source, options)?),
-        Format::Hdf5 => Box::new(hdf5::Hdf5::new(source, options)?),
-        Format::Pqr => Box::new(pqr::Pqr::new(source, options)),
-        Format::Poscar => Box::new(poscar::Poscar::new(source, options)),
-        Format::Sdf => Box::new(molfile::Molfile::new(source, options)),
-        Format::Mol2 => Box::new(mol2::Mol2::new(source, options)),
-        Format::Xsf => Box::new(xsf::Xsf::new(source, options)),
-        Format::Cfg => Box::new(cfg::Cfg::new(source, options)),
-        Format::Psf => Box::new(psf::Psf::new(source, options)),
-    };
+    let reader = (formats::row(format).open)(source, options)?;
     Ok((format, reader))
 }
 

@@ -1,10 +1,10 @@
 //! Detects the format of a file from its first bytes and lines.
 
 use crate::foreign::{self, Foreign};
+use crate::formats::{ROWS, Row, Sign, row};
 use crate::{
-    FileError, Format, ReadOptions, Role, cfg, cif, dcd, fields::Fields, gro, gromacs, gsd, hdf5,
-    header, line, mol2, molfile, netcdf, number, numpy, pdb, ply, poscar, pqr, psf, source::Source,
-    units, utf16, xsf,
+    FileError, Format, ReadOptions, Role, cif, fields::Fields, gro, header, line, number, pdb, pqr,
+    source::Source, units, utf16,
 };
 
 /// Help that lists the formats that can be detected.
@@ -16,9 +16,6 @@ const KNOWN: &str = "files of particles are rows of `x y z [radius]`, tables wit
 
 /// Maximum number of lines before the number of atoms in a LAMMPS data file.
 const DATA_HEADER: usize = 40;
-
-/// Test of the head of a file.
-type Test = fn(&[u8]) -> bool;
 
 /// Returns the format in the options, or else the detected one.
 pub(crate) fn format(source: &Source, options: &ReadOptions) -> Result<Format, FileError> {
@@ -40,7 +37,9 @@ pub(crate) fn format(source: &Source, options: &ReadOptions) -> Result<Format, F
             _ => Ok(format),
         };
     }
-    if let Some(asked) = options.format.filter(|format| format.has_magic()) {
+    if let Some(asked) =
+        options.format.filter(|&format| matches!(row(format).sign, Sign::Signature(_)))
+    {
         let help = "leave --format out: the content tells the format";
         return Err(fault(format!("is not {}", asked.name())).with_help(help));
     }
@@ -79,33 +78,14 @@ pub(crate) fn format(source: &Source, options: &ReadOptions) -> Result<Format, F
 
 /// Returns the format of a text whose first lines have a structure of their own, after any title.
 fn structured(head: &[u8]) -> Option<Format> {
-    let first = head.split(|&byte| byte == b'\n').next().unwrap_or_default().trim_ascii_end();
-    if psf::is_psf(first, head) {
-        return Some(Format::Psf);
-    }
-    let structures: [(Test, Format); 5] = [
-        (mol2::is_mol2, Format::Mol2),
-        (molfile::is_molfile, Format::Sdf),
-        (poscar::is_poscar, Format::Poscar),
-        (xsf::is_xsf, Format::Xsf),
-        (cfg::is_cfg, Format::Cfg),
-    ];
-    structures.into_iter().find(|(is, _)| is(head)).map(|(_, format)| format)
+    // Those with the plainest signs are last in the table.
+    let fits = |row: &&Row| matches!(row.sign, Sign::Structure(is) if is(head));
+    ROWS.iter().rev().find(fits).map(|row| row.format)
 }
 
 fn binary(head: &[u8]) -> Option<Format> {
-    let signatures: [(Test, Format); 9] = [
-        (|head| head.starts_with(&gsd::MAGIC), Format::Gsd),
-        (|head| head.starts_with(hdf5::MAGIC), Format::Hdf5),
-        (|head| head.starts_with(numpy::MAGIC), Format::Npy),
-        (|head| head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06"), Format::Npz),
-        (ply::is_ply, Format::Ply),
-        (dcd::is_dcd, Format::Dcd),
-        (gromacs::is_xtc, Format::Xtc),
-        (gromacs::is_trr, Format::Trr),
-        (netcdf::is_netcdf, Format::NetCdf),
-    ];
-    signatures.into_iter().find(|(is, _)| is(head)).map(|(_, format)| format)
+    let fits = |row: &&Row| matches!(row.sign, Sign::Signature(is) if is(head));
+    ROWS.iter().find(fits).map(|row| row.format)
 }
 
 fn detect(head: &[u8], options: &ReadOptions) -> Result<Format, String> {

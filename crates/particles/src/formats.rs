@@ -1,0 +1,110 @@
+//! The table of formats: what tells each, and its reader.
+
+use crate::format::Format;
+use crate::frame_reader::FrameReader;
+use crate::source::Source;
+use crate::{
+    FileError, ReadOptions, cfg, cif, csv, dcd, gro, gromacs, gsd, hdf5, lammps, mol2, molfile,
+    netcdf, numpy, pdb, ply, poscar, pqr, psf, text, xsf, xyz,
+};
+
+/// A test of the head of a file.
+pub(crate) type Test = fn(&[u8]) -> bool;
+
+/// Opens the reader of a file.
+type Open = fn(Source, &ReadOptions) -> Result<Box<dyn FrameReader>, FileError>;
+
+/// The sign of a format.
+#[derive(Clone, Copy)]
+pub(crate) enum Sign {
+    /// The first bytes.
+    Signature(Test),
+    /// The structure of the first lines, after any title.
+    Structure(Test),
+    /// Words and numbers of the first lines, which are weighed in `sniff.rs`.
+    Words,
+}
+
+/// The row of a format.
+pub(crate) struct Row {
+    pub(crate) format: Format,
+    pub(crate) sign: Sign,
+    pub(crate) open: Open,
+}
+
+/// Makes a row; the reader is an expression that may return early with an error.
+macro_rules! row {
+    ($format:ident, $sign:expr, |$source:ident, $options:ident| $reader:expr) => {
+        Row {
+            format: Format::$format,
+            sign: $sign,
+            open: |$source, $options| Ok(Box::new($reader)),
+        }
+    };
+}
+
+use Sign::{Signature, Structure, Words};
+
+/// All formats.
+pub(crate) const ROWS: [Row; 25] = [
+    row!(Xyzr, Words, |source, options| text::Rows::new(source, options)),
+    row!(Csv, Words, |source, options| csv::Csv::new(source, options)),
+    row!(Xyz, Words, |source, options| xyz::Xyz::new(source, options)),
+    row!(LammpsDump, Words, |source, options| lammps::Dump::new(source, options)),
+    row!(LammpsData, Words, |source, options| lammps::Data::new(source, options)),
+    row!(Gro, Words, |source, options| gro::Gro::new(source, options)),
+    row!(Pdb, Words, |source, options| pdb::Pdb::new(source, options)),
+    row!(MmCif, Words, |source, options| cif::MmCif::new(source, options)),
+    row!(Cif, Words, |source, options| cif::Crystal::new(source, options)),
+    row!(Gsd, Signature(|head| head.starts_with(&gsd::MAGIC)), |source, options| {
+        gsd::Gsd::new(source, options)?
+    }),
+    row!(Ply, Signature(ply::is_ply), |source, options| ply::Ply::new(source, options)),
+    row!(Npy, Signature(|head| head.starts_with(numpy::MAGIC)), |source, options| {
+        numpy::Npy::new(source, options)?
+    }),
+    row!(
+        Npz,
+        Signature(|head| head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06")),
+        |source, options| numpy::Npz::new(source, options)?
+    ),
+    row!(Dcd, Signature(dcd::is_dcd), |source, options| dcd::Dcd::new(source, options)?),
+    row!(Xtc, Signature(gromacs::is_xtc), |source, options| gromacs::Xtc::new(source, options)?),
+    row!(Trr, Signature(gromacs::is_trr), |source, options| gromacs::Trr::new(source, options)?),
+    row!(NetCdf, Signature(netcdf::is_netcdf), |source, options| netcdf::NetCdf::new(
+        source, options
+    )?),
+    row!(Hdf5, Signature(|head| head.starts_with(hdf5::MAGIC)), |source, options| {
+        hdf5::Hdf5::new(source, options)?
+    }),
+    row!(Pqr, Words, |source, options| pqr::Pqr::new(source, options)),
+    row!(Poscar, Structure(poscar::is_poscar), |source, options| poscar::Poscar::new(
+        source, options
+    )),
+    row!(Sdf, Structure(molfile::is_molfile), |source, options| molfile::Molfile::new(
+        source, options
+    )),
+    row!(Mol2, Structure(mol2::is_mol2), |source, options| mol2::Mol2::new(source, options)),
+    row!(Xsf, Structure(xsf::is_xsf), |source, options| xsf::Xsf::new(source, options)),
+    row!(Cfg, Structure(cfg::is_cfg), |source, options| cfg::Cfg::new(source, options)),
+    row!(Psf, Structure(psf::is_psf), |source, options| psf::Psf::new(source, options)),
+];
+
+/// Returns the row of a format.
+pub(crate) fn row(format: Format) -> Row {
+    let [first, ..] = ROWS;
+    ROWS.into_iter().find(|row| row.format == format).unwrap_or(first)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_format_has_a_row() {
+        for (name, format) in Format::ALL {
+            assert_eq!(row(format).format, format, "{name}");
+        }
+        assert_eq!(ROWS.len(), Format::ALL.len());
+    }
+}
