@@ -38,7 +38,7 @@ pub(in crate::cli) struct Args {
 pub(in crate::cli) const EXAMPLES: &str = "\
 Each ray is also tested in exact integer arithmetic, without rounding. For one hit in 16, Spherule
 must also answer correctly for nine maximum distances: the hit distance and values next to it,
-down to the adjacent double-precision numbers. With all regimes, sticks, ellipsoids and cones are tested
+down to the adjacent double-precision numbers. With all regimes, sticks, ellipsoids, cones and triangles are tested
 too, beside a reference of 180 decimal places.
 
 Exit codes: 0 Spherule made no error, 1 Spherule made at least one

@@ -1,4 +1,4 @@
-//! The bodies that rays may hit: spheres, sticks, ellipsoids and cones.
+//! The bodies that rays may hit.
 
 use super::{Query, Tracer};
 use crate::bodies::{self, BodyTrees};

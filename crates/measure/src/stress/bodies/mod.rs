@@ -1,4 +1,4 @@
-//! Stress tests of bodies other than spheres: sticks, ellipsoids and cones.
+//! Stress tests of bodies other than spheres.
 //!
 //! Rays graze bodies, pass through edges and ends, start on surfaces, within, and 100,000 units away, or all numbers are small
 //! integers, so that many rays touch exactly.
@@ -19,6 +19,7 @@ use spherule_core::internals::ellipsoids::{Ellipsoid, EllipsoidItem};
 use spherule_core::internals::random::Random;
 use spherule_core::internals::ray::{ExactRay, Hits, MISS, Rays};
 use spherule_core::internals::spheres::Spheres;
+use spherule_core::internals::triangles::{Triangle, TriangleItem};
 use spherule_render::sampling::{mix, stream};
 
 /// Number of bodies of a scene.
@@ -72,6 +73,7 @@ pub(super) fn run(rays: u64, seed: u64) -> Vec<BodyReport> {
         run_kind::<Capsule>(rays, seed),
         run_kind::<Ellipsoid>(rays, seed),
         run_kind::<Cone>(rays, seed),
+        run_kind::<Triangle>(rays, seed),
     ]
 }
 
@@ -239,6 +241,42 @@ impl Kind for Cone {
 
     fn trees<'a>(none: BodyTrees<'a>, tree: &'a BodyTree<Self>) -> BodyTrees<'a> {
         BodyTrees { cones: Some(tree), ..none }
+    }
+}
+
+impl Kind for Triangle {
+    const NAME: &'static str = "triangles";
+
+    fn item(id: u32, on_lattice: bool, random: &mut Random) -> TriangleItem {
+        loop {
+            let first = place(on_lattice, random);
+            let corners = [(); 2].map(|()| other_place(first, on_lattice, random).as_vec3());
+            if let Ok(item) = TriangleItem::new([first.as_vec3(), corners[0], corners[1]], id) {
+                return item;
+            }
+        }
+    }
+
+    fn surface(&self, random: &mut Random) -> (DVec3, DVec3) {
+        let [a, b, c] = self.corners;
+        let [mut u, mut v] = [random.unit(), random.unit()];
+        if u + v > 1.0 {
+            (u, v) = (1.0 - u, 1.0 - v);
+        }
+        let on_edge = [0.0, v][random.index(2)];
+        (a + (b - a) * u + (c - a) * on_edge, self.normal())
+    }
+
+    fn corner(&self, random: &mut Random) -> DVec3 {
+        self.corners[random.index(3)]
+    }
+
+    fn body(self) -> Body {
+        Body::Triangle(self)
+    }
+
+    fn trees<'a>(none: BodyTrees<'a>, tree: &'a BodyTree<Self>) -> BodyTrees<'a> {
+        BodyTrees { triangles: Some(tree), ..none }
     }
 }
 

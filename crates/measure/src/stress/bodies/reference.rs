@@ -10,6 +10,7 @@ use spherule_core::internals::capsules::Capsule;
 use spherule_core::internals::cones::Cone;
 use spherule_core::internals::ellipsoids::Ellipsoid;
 use spherule_core::internals::ray::ExactRay;
+use spherule_core::internals::triangles::Triangle;
 use spherule_render::elementary::power_of_two;
 
 /// Binary places of all numbers.
@@ -29,6 +30,7 @@ pub(super) enum Body {
     Capsule(Capsule),
     Ellipsoid(Ellipsoid),
     Cone(Cone),
+    Triangle(Triangle),
 }
 
 /// A part of a body as a line crosses it: points at `t` with `a t^2 + 2 b t + c <= 0`, and with `start + t slope` from 0 to `height`.
@@ -46,8 +48,10 @@ struct Slab {
 /// Returns the distance at which a ray enters a body, or, from within, leaves it; `None` for a miss.
 pub(super) fn first_hit(ray: &ExactRay, body: &Body) -> Option<Fixed> {
     let (origin, direction) = (vector(ray.origin), vector(ray.direction));
-    let mut at: Vec<Fixed> =
-        parts(body, &origin, &direction).iter().flat_map(Part::crossings).collect();
+    let mut at: Vec<Fixed> = match body {
+        Body::Triangle(triangle) => of_triangle(triangle, &origin, &direction),
+        _ => parts(body, &origin, &direction).iter().flat_map(Part::crossings).collect(),
+    };
     if let Body::Cone(cone) = body {
         // At the apex, where the form has no sign to change.
         at.extend(distance_of(&vector(cone.apex), &origin, &direction));
@@ -107,7 +111,64 @@ fn parts(body: &Body, origin: &Vector, direction: &Vector) -> Vec<Part> {
             let form = [form(direction, direction), form(&from, direction), form(&from, &from)];
             vec![Part { form, slab: Some(slab) }]
         }
+        // It has no quadratic form.
+        Body::Triangle(_) => Vec::new(),
     }
+}
+
+/// Returns the distance at which a line meets a triangle, by coordinates of the point along two sides; or where it crosses its sides, if it is
+/// in its plane.
+fn of_triangle(triangle: &Triangle, origin: &Vector, direction: &Vector) -> Vec<Fixed> {
+    let corners = triangle.corners.map(vector);
+    let sides = [minus(&corners[1], &corners[0]), minus(&corners[2], &corners[0])];
+    let normal = cross(&sides[0], &sides[1]);
+    let from = minus(&corners[0], origin);
+    let (height, slope) = (dot(&from, &normal), dot(direction, &normal));
+    if is_zero(&slope) {
+        let at =
+            |i: usize| on_side([&corners[i], &corners[(i + 1) % 3]], &normal, origin, direction);
+        return if is_zero(&height) { (0..3).flat_map(at).collect() } else { Vec::new() };
+    }
+    // All is multiplied by the slope, so that nothing is rounded that decides.
+    let inward = |v: &Vector| -> Vector {
+        std::array::from_fn(|i| times(&height, &direction[i]) - times(&slope, &v[i]))
+    };
+    let point = inward(&from);
+    let gram = |i: usize, j: usize| dot(&sides[i], &sides[j]);
+    let along = [dot(&point, &sides[0]), dot(&point, &sides[1])];
+    let first = times(&gram(1, 1), &along[0]) - times(&gram(0, 1), &along[1]);
+    let second = times(&gram(0, 0), &along[1]) - times(&gram(0, 1), &along[0]);
+    let third = times(&slope, &dot(&normal, &normal)) - &first - &second;
+    let is_up = is_positive(&slope);
+    let outside = |weight: &Fixed| is_positive(&if is_up { -weight } else { weight.clone() });
+    if [first, second, third].iter().any(outside) {
+        Vec::new()
+    } else {
+        vec![over(&height, &slope)]
+    }
+}
+
+/// Returns the distances at which a line meets a side of a triangle in whose plane it is.
+fn on_side(
+    [start, end]: [&Vector; 2],
+    normal: &Vector,
+    origin: &Vector,
+    direction: &Vector,
+) -> Vec<Fixed> {
+    let (side, from) = (minus(end, start), minus(start, origin));
+    let across = dot(&cross(direction, &side), normal);
+    let aside = dot(&cross(&from, direction), normal);
+    if is_zero(&across) {
+        let along = |corner: &Vector| distance_of(corner, origin, direction);
+        return if is_zero(&aside) {
+            [along(start), along(end)].into_iter().flatten().collect()
+        } else {
+            Vec::new()
+        };
+    }
+    let place = over(&aside, &across);
+    let beyond = is_positive(&-&place) || is_positive(&(place - fixed(1.0)));
+    if beyond { Vec::new() } else { vec![over(&dot(&cross(&from, &side), normal), &across)] }
 }
 
 impl Slab {
