@@ -254,7 +254,7 @@ class Triangle(_Triangle, total=False):
 
 
 class _Mesh(TypedDict):
-    path: str
+    path: str | PathLike[str]
 
 
 class Mesh(_Mesh, total=False):

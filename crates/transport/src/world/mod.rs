@@ -92,7 +92,7 @@ pub struct World {
     /// All other bodies.
     #[doc(hidden)]
     pub others: OtherBodies,
-    /// Numbers of bodies of the scene, those that slices remove included.
+    /// Numbers of bodies of the scene other than spheres, those that slices remove included.
     scene_bodies: BodyRows,
     /// Planes at which spheres are cut.
     #[doc(hidden)]
@@ -242,6 +242,9 @@ impl World {
         let Parts { transform, placement, spheres, bvh, mut appearance, camera_visible, omitted } =
             parts;
         let materials = Materials::build(&scene.materials);
+        let mut scene_bodies = scene.body_rows();
+        // Spheres may be in the world alone.
+        scene_bodies.0[BodyKind::Sphere as usize] = 0;
         let others = OtherBodies::build(scene, &transform);
         let trees = others.trees(Tree { bvh: &bvh, spheres: &spheres });
         bodies::append_appearance(&mut appearance, trees, scene, &materials);
@@ -259,7 +262,7 @@ impl World {
             appearance,
             bvh,
             others,
-            scene_bodies: scene.body_rows(),
+            scene_bodies,
             cut,
             camera_visible,
             coincident: Vec::new(),
@@ -381,7 +384,7 @@ impl World {
         if body.kind == BodyKind::Sphere {
             return id;
         }
-        let before = BodyKind::ALL.into_iter().take_while(|&kind| kind < body.kind).skip(1);
+        let before = BodyKind::ALL.into_iter().take_while(|&kind| kind < body.kind);
         let before: usize = before.map(|kind| self.scene_bodies.count(kind)).sum();
         spheres as u32 + before as u32 + id
     }
