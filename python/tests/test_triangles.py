@@ -24,7 +24,7 @@ def test_an_array_is_what_sections_are():
 
 
 def test_triangles_join_particles_and_survive_pickling():
-    scene = spherule.Scene([[0, 0, 0], [1, 0, 0]], triangles=CORNERS)
+    scene = spherule.Scene([[0, 0, 0], [1, 0, 0]], radius=0.3, triangles=CORNERS)
     again = pickle.loads(pickle.dumps(scene))
     options = {"size": (40, 30), "spp": 1}
     assert np.array_equal(scene.render(**options).pixels, again.render(**options).pixels)
@@ -59,4 +59,4 @@ def test_flat_ones_are_refused_and_none_is_none():
     flat = [*CORNERS, [[0, 0, 0], [1, 1, 1], [2, 2, 2]]]
     with pytest.raises(spherule.Error, match="triangle 2"):
         spherule.Scene(triangles=flat).render(spp=1)
-    assert len(spherule.Scene([[0, 0, 0]], triangles=np.zeros((0, 3, 3)))) == 1
+    assert len(spherule.Scene([[0, 0, 0]], radius=1, triangles=np.zeros((0, 3, 3)))) == 1
