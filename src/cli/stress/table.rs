@@ -139,7 +139,7 @@ mod tests {
         let regimes = REGIMES.iter().collect();
         let text = text(&run(&Options { rays: 3300, seed: 0, regimes }, &|_| ()));
         let lines: Vec<_> = text.lines().collect();
-        assert_eq!(lines.len(), 3 * (REGIMES.len() + 2) + 2 + 1 + 3 + 2);
+        assert_eq!(lines.len(), 3 * (REGIMES.len() + 2) + 2 + 1 + 4 + 2);
         assert!(lines[0].starts_with("decisions") && lines[2].starts_with("near_unit"));
         let (group, name) = (lines[0].find("wrong sphere"), lines[1].rfind("naive"));
         assert!(group <= name && name < group.map(|at| at + 12), "{text}");
