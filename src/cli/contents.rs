@@ -58,7 +58,7 @@ impl BodyCounts {
     }
 
     /// The kinds but spheres of which there are bodies, and their numbers.
-    pub(super) fn others(self) -> impl Iterator<Item = (BodyKind, u64)> {
+    pub(super) fn besides_spheres(self) -> impl Iterator<Item = (BodyKind, u64)> {
         self.all().skip(1).filter(|(_, count)| *count > 0)
     }
 }

@@ -426,7 +426,7 @@ fn invalid_sections_of_bodies_are_refused() {
 }
 
 /// A closed mesh: an octahedron whose faces are divided, on a sphere, as PLY.
-fn ball(radius: f64) -> String {
+fn spherical_mesh(radius: f64) -> String {
     let mut triangles: Vec<[DVec3; 3]> = Vec::new();
     for x in [DVec3::X, DVec3::NEG_X] {
         for (y, z) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
@@ -460,16 +460,18 @@ fn ball(radius: f64) -> String {
 #[test]
 fn meshes_are_closed() {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("ball.ply"), ball(0.5)).unwrap();
+    std::fs::write(folder.path().join("sphere.ply"), spherical_mesh(0.5)).unwrap();
     let path = folder.path().join("mesh.toml");
     let text = "[material.black]\nkind = \"lambertian\"\ncolor = 0\n\
-                [[mesh]]\npath = \"ball.ply\"\nscale = 2\nmaterial = \"black\"\n";
+                [[mesh]]\npath = \"sphere.ply\"\nscale = 2\nmaterial = \"black\"\n";
     std::fs::write(&path, text).unwrap();
     let mut scene = Scene::load(&path).unwrap();
     assert_eq!(scene.triangles.len(), 512);
     assert!(scene.warnings[0].contains("1 of 513 triangles"), "{:?}", scene.warnings);
     assert!(
-        spherule_render::scene::included_files(&path).iter().any(|file| file.ends_with("ball.ply"))
+        spherule_render::scene::included_files(&path)
+            .iter()
+            .any(|file| file.ends_with("sphere.ply"))
     );
     // No light of the white environment comes in.
     scene.settings.depth = Some(2);

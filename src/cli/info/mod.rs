@@ -176,7 +176,7 @@ impl Info {
         output::print(format_args!("{}: {}", self.file, self.title));
         self.particles.iter().for_each(ParticleInfo::print);
         output::print(format_args!("spheres      {}", HumanCount(self.bodies.0[0])));
-        for (kind, count) in self.bodies.others() {
+        for (kind, count) in self.bodies.besides_spheres() {
             let name = format!("{}s", kind.name());
             output::print(format_args!("{name:<12} {}", HumanCount(count)));
         }

@@ -10,7 +10,7 @@
 //! The hit is at `|height| / |slope|`, or if both are 0, anywhere. So it is not before `(|height| - a) / (|slope| + b)`, where `a` and `b` are the
 //! bounds. The difference, the sum and the quotient add `3 u` of no more than the product of magnitudes in `a`.
 //!
-//! What underflows in a product is less than 2^-149, and is multiplied by coordinates of `F`, `d` and the edges, or by none: less than
+//! A product loses less than 2^-149 by underflow, and that is multiplied by coordinates of `F`, `d` and the edges, or by none: less than
 //! [`FilterRay::UNDERFLOW`].
 
 use super::TriangleBlock;

@@ -110,6 +110,7 @@ impl BodyColumns for Cones {
     }
 
     fn bytes_each(&self) -> BodyBytes {
+        // Apex, base, radius, material and color.
         BodyBytes { columns: 72, building: 156 }
     }
 

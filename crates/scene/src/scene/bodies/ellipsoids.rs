@@ -34,9 +34,6 @@ impl Ellipsoids {
     /// Maximum ratio of two semi-axes of an ellipsoid.
     pub const MAX_RATIO: f64 = EllipsoidItem::MAX_RATIO;
 
-    /// Memory of an ellipsoid.
-    pub(in crate::scene) const BYTES: BodyBytes = BodyBytes { columns: 96, building: 232 };
-
     /// Returns the number of ellipsoids.
     pub fn len(&self) -> usize {
         self.material.len()
@@ -111,7 +108,8 @@ impl BodyColumns for Ellipsoids {
     }
 
     fn bytes_each(&self) -> BodyBytes {
-        Self::BYTES
+        // Center, semi-axes, rotation, material and color.
+        BodyBytes { columns: 96, building: 232 }
     }
 
     fn fault(&self, row: usize) -> Option<String> {

@@ -96,6 +96,7 @@ impl BodyColumns for Sticks {
     }
 
     fn bytes_each(&self) -> BodyBytes {
+        // Ends, radius, material and two colors.
         BodyBytes { columns: 84, building: 172 }
     }
 

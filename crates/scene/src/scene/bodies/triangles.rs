@@ -22,9 +22,6 @@ pub struct Triangles {
 }
 
 impl Triangles {
-    /// Maximum number of triangles in a scene.
-    pub const MAX: usize = 1 << 30;
-
     /// Returns the number of triangles.
     pub fn len(&self) -> usize {
         self.material.len()
@@ -91,6 +88,7 @@ impl BodyColumns for Triangles {
     }
 
     fn bytes_each(&self) -> BodyBytes {
+        // Three corners, material and color.
         BodyBytes { columns: 88, building: 172 }
     }
 

@@ -4,9 +4,9 @@ use super::block::{Block, Source};
 use super::materials::{Materials, solid_row};
 use super::spheres::existing;
 use crate::memory;
-use crate::scene::bodies::{BodyColumns as _, MeshKeys};
+use crate::scene::bodies::MeshKeys;
 use crate::scene::keys::Schema;
-use crate::scene::{FileError, Scene, Triangles};
+use crate::scene::{BodyColumns as _, FileError, Scene, Triangles};
 use spherule_particles::internals::{Mesh, read_mesh};
 
 /// Appends the triangles of all meshes. Those without area are left out, with a warning.

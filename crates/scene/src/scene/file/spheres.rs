@@ -5,7 +5,7 @@ use super::materials::{self, Materials};
 use crate::memory;
 use crate::scene::keys::{FileKeys, GenerateKeys, Schema, SphereKeys};
 use crate::scene::particles::{self, Radii, ReadOptions};
-use crate::scene::{Ellipsoids, Footprint};
+use crate::scene::{BodyColumns as _, Ellipsoids, Footprint};
 use crate::scene::{FileError, Scene, Spheres};
 use std::path::PathBuf;
 
@@ -79,7 +79,7 @@ fn read_file(
     };
     let path = existing(source, block, "path", &path)?;
     let mut particles = particles::read(&path, &options)?;
-    let others = Ellipsoids::BYTES.of(particles.frame.shapes.semi_axes.len());
+    let others = Ellipsoids::default().bytes_each().of(particles.frame.shapes.semi_axes.len());
     let added = Footprint { others, ..Footprint::of_columns(&particles.spheres, &[]) };
     check_capacity(&scene.spheres, &added, added.scene(), materials)
         .map_err(|message| block.error_at("path", &message))?;

@@ -101,16 +101,13 @@ impl Scene {
         });
         let across =
             DVec3::AXES.map(|normal| Slice { normal, distance: 0.0, mode: SliceMode::default() });
-        let boxes = |bodies: &'_ dyn BodyColumns| {
-            let ends = |row: usize| across.map(|slice| bodies.depths(row, &slice));
-            let sides = |row: usize| {
-                let ends = ends(row);
-                [0, 1].map(|end| DVec3::from(ends.map(|range| range[end])))
-            };
-            (0..bodies.len()).map(sides).collect::<Vec<_>>()
-        };
-        own.chain(self.standing_bodies().flat_map(boxes))
-            .reduce(|[low, high], [lower, upper]| [low.min(lower), high.max(upper)])
+        let others = self.standing_bodies().flat_map(move |bodies| {
+            (0..bodies.len()).map(move |row| {
+                let ranges = across.map(|slice| bodies.depths(row, &slice));
+                [0, 1].map(|end| DVec3::from(ranges.map(|range| range[end])))
+            })
+        });
+        own.chain(others).reduce(|[low, high], [lower, upper]| [low.min(lower), high.max(upper)])
     }
 
     fn standing_bodies(&self) -> impl Iterator<Item = &dyn BodyColumns> {
