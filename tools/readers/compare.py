@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Holds Spherule's readers of particle files against other programs: counts, frames, cells, first and last rows.
 
-    pip install ase chemfiles gemmi gsd h5py MDAnalysis plyfile
+    pip install ase biotite chemfiles gemmi gsd h5py MDAnalysis plyfile pyyaml
     cargo build --release
     tools/readers/compare.py FOLDER ...       # all files that Spherule reads, folders within them too
     tools/readers/compare.py --answers        # write tests/data/particles/answers.toml
@@ -166,7 +166,7 @@ def programs(file, format):
         "mmcif": [by_gemmi],
         "gro": [by_mdanalysis],
         "xyz": [by_ase, by_mdanalysis],
-        "lammps-dump": [by_ase_dump, by_mdanalysis_dump],
+        "lammps-dump": [by_yaml] if file.suffix == ".yaml" else [by_ase_dump, by_mdanalysis_dump],
         "lammps-data": [by_ase_data],
         "gsd": [by_gsd],
         "ply": [by_plyfile],
@@ -185,6 +185,9 @@ def programs(file, format):
         "cfg": [by_ase_cfg],
         "sdf": [by_chemfiles],
         "mol2": [by_chemfiles],
+        "bcif": [by_biotite],
+        "rst7": [by_mdanalysis_restart],
+        "ase": [by_ase_trajectory],
     }[format]
 
 
@@ -369,6 +372,55 @@ def edges_of(lengths):
     return triclinic_vectors(lengths)
 
 
+def by_mdanalysis_restart(file):
+    import MDAnalysis
+    from MDAnalysis.coordinates.INPCRD import INPReader
+    frame = INPReader(str(file)).ts
+    # It does not read the box.
+    lengths = [float(word) for word in unpacked(file).splitlines()[-1].split()]
+    return answer(f"MDAnalysis {MDAnalysis.__version__}", frame.positions, edges_of(lengths), 1)
+
+
+def by_ase_trajectory(file):
+    import ase.io
+    last = ase.io.read(file, index=-1)
+    return by_ase(file) | {"last_frame": last.positions, "last_cell": last.cell.array}
+
+
+def by_yaml(file):
+    import yaml
+    frames = [frame for frame in yaml.safe_load_all(unpacked(file)) if frame]
+
+    def positions(frame):
+        columns = [frame["keywords"].index(axis) for axis in "xyz"]
+        return np.array([[row[column] for column in columns] for row in frame["data"]])
+
+    (x, x_high), (y, y_high), (z, z_high), (xy, xz, yz) = frames[0]["box"]
+    x_high, x = x_high - max(0, xy, xz, xy + xz), x - min(0, xy, xz, xy + xz)
+    y_high, y = y_high - max(0, yz), y - min(0, yz)
+    cell = np.array([[x_high - x, 0, 0], [xy, y_high - y, 0], [xz, yz, z_high - z]])
+    return answer(f"PyYAML {yaml.__version__}", positions(frames[0]), cell, len(frames), origin=[x, y, z],
+                  last_frame=positions(frames[-1]), last_cell=cell)
+
+
+def by_biotite(file):
+    """BinaryCIF, which biotite decodes to text and gemmi reads."""
+    import biotite
+    import tempfile
+    from biotite.structure.io import pdbx
+    text = pdbx.CIFFile({
+        block: pdbx.CIFBlock({
+            name: pdbx.CIFCategory({
+                key: pdbx.CIFColumn(pdbx.CIFData(column.as_array(str)), column.mask and pdbx.CIFData(column.mask.array))
+                for key, column in category.items()
+            }) for name, category in blocks.items()
+        }) for block, blocks in pdbx.BinaryCIFFile.read(str(file)).items()
+    })
+    with tempfile.NamedTemporaryFile(suffix=".cif", mode="w") as copy:
+        text.write(copy.name)
+        return by_gemmi(copy.name) | {"program": f"biotite {biotite.__version__}"}
+
+
 def by_mdanalysis_dump(file):
     # It sorts by ids, and moves the box to the origin.
     return by_mdanalysis(file, topology_format="LAMMPSDUMP", format="LAMMPSDUMP") | {"reordered": True}
@@ -425,7 +477,8 @@ def by_numpy_text(file):
 FORMATS = {".h5md": "hdf5", ".h5": "hdf5", ".hdf5": "hdf5", ".nc": "hdf5", ".dcd": "dcd", ".xtc": "xtc", ".trr": "trr", ".ncdf": "netcdf", ".pqr": "pqr", ".poscar": "poscar", ".xdatcar": "poscar", ".sdf": "sdf", ".xsf": "xsf", ".axsf": "xsf", ".cfg": "cfg",
            ".mol2": "mol2",
            ".extxyz": "xyz", ".xyz": "xyz", ".data": "lammps-data", ".lammpstrj": "lammps-dump", ".gro": "gro", ".pdb": "pdb",
-           ".gsd": "gsd", ".ply": "ply", ".npy": "npy", ".npz": "npz", ".csv": "csv", ".txt": "xyzr", ".cif": "cif"}
+           ".gsd": "gsd", ".ply": "ply", ".npy": "npy", ".npz": "npz", ".csv": "csv", ".txt": "xyzr", ".cif": "cif",
+           ".bcif": "bcif", ".rst7": "rst7", ".traj": "ase", ".yaml": "lammps-dump"}
 
 
 def write_answers():

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the small particle files of tests/data/particles, by the programs whose formats they are.
 
-    pip install ase gemmi gsd MDAnalysis plyfile
+    pip install ase biotite gemmi gsd MDAnalysis parmed plyfile
     tools/readers/samples.py
     tools/readers/compare.py --answers        # what those programs read from them
 
@@ -70,6 +70,8 @@ def main():
     lammps()
     proteins()
     binary()
+    amber()
+    ase_trajectory()
     space_groups()
 
 
@@ -145,6 +147,18 @@ def lammps():
             text += (f"ITEM: TIMESTEP\n{step * 100}\nITEM: NUMBER OF ATOMS\n{len(atoms)}\n{box}"
                      f"ITEM: ATOMS id type {columns}\n" + "".join(rows))
         (OUT / f"water_{name}.lammpstrj").write_text(text)
+    (OUT / "water.yaml").write_text("".join(lammps_yaml(atoms, types, bounds, step) for step in range(2)))
+
+
+def lammps_yaml(atoms, types, bounds, step):
+    """A frame as `DumpYAML` of LAMMPS writes it."""
+    box = "".join("  - [ %.6f, %.6f ]\n" % tuple(row[:2]) for row in bounds)
+    rows = "".join(f"  - [ {at + 1}, {kind}, {x:.6f}, {y:.6f}, {z:.6f}, ]\n"
+                   for at, (kind, (x, y, z)) in enumerate(zip(types, atoms.positions + 0.01 * step)))
+    return (f"---\ncreator: LAMMPS\ntimestep: {step * 100}\nunits: real\ntime: {step * 0.5}\nnatoms: {len(atoms)}\n"
+            f"boundary: [ p, p, p, p, p, p, ]\nthermo:\n  - keywords: [ Step, Temp, ]\n  - data: [ {step * 100}, 300.5, ]\n"
+            f"box:\n{box}  - [ {', '.join('%.6f' % row[2] for row in bounds)} ]\n"
+            f"keywords: [ id, type, x, y, z,  ]\ndata:\n{rows}...\n")
 
 
 PDB_ATOM = "ATOM  {:5d} {:4s}{:1s}{:3s} {:1s}{:4d}    {:8.3f}{:8.3f}{:8.3f}{:6.2f}{:6.2f}          {:>2s}"
@@ -164,6 +178,7 @@ def proteins():
     (OUT / "alternates.pdb").write_text(cell + "\n".join(rows) + "\nEND\n")
     structure = gemmi.read_structure(str(OUT / "alternates.pdb"))
     structure.make_mmcif_document().write_file(str(OUT / "alternates.cif"))
+    binary_cif()
     models = "".join(f"MODEL     {model + 1:4d}\n" + "\n".join(rows[:2 + model]) + "\nENDMDL\n" for model in range(3))
     (OUT / "models.pdb").write_text(cell + models + "END\n")
     import MDAnalysis
@@ -176,6 +191,50 @@ def proteins():
     universe.dimensions = atoms.cell.cellpar()
     universe.atoms.write(str(OUT / "water.gro"))
     universe.atoms.write(str(OUT / "water.pdb"))
+
+
+def binary_cif():
+    """`alternates.cif`, with the encodings that biotite finds best for each column."""
+    from biotite.structure.io import pdbx
+    block = pdbx.CIFFile.read(str(OUT / "alternates.cif")).block
+    file = pdbx.BinaryCIFFile()
+    file["alternates"] = pdbx.BinaryCIFBlock()
+    for name, category in block.items():
+        file["alternates"][name] = pdbx.BinaryCIFCategory({
+            key: pdbx.BinaryCIFColumn(column_data(column), column.mask and pdbx.BinaryCIFData(column.mask.array))
+            for key, column in category.items()
+        })
+    pdbx.compress(file).write(str(OUT / "alternates.bcif"))
+
+
+def column_data(column):
+    from biotite.structure.io import pdbx
+    for kind in (int, float, str):
+        try:
+            return pdbx.BinaryCIFData(column.as_array(kind))
+        except ValueError:
+            continue
+
+
+def amber():
+    """A restart file with velocities and a box."""
+    from parmed.amber import AmberAsciiRestart
+    atoms = water()
+    file = AmberAsciiRestart(str(OUT / "water.rst7"), "w", natom=len(atoms), title="four molecules", time=12.5)
+    file.coordinates = atoms.positions
+    file.velocities = np.full((len(atoms), 3), 0.25)
+    file.box = atoms.cell.cellpar()
+    file.close()
+
+
+def ase_trajectory():
+    atoms = water()
+    with ase.io.Trajectory(OUT / "water.traj", "w") as file:
+        for step in range(3):
+            atoms.set_velocities(np.full((len(atoms), 3), 0.01 * step))
+            file.write(atoms)
+            atoms.positions += 0.25
+            atoms.set_cell(atoms.cell * 1.01)
 
 
 def binary():

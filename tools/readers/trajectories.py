@@ -222,6 +222,33 @@ def structures(atoms):
         own.charge, own.mass, own.type = atom.charge, atom.mass, atom.name
     topology.box = None
     parmed.charmm.CharmmPsfFile.from_structure(topology).write_psf(str(TOPOLOGIES / "water.psf"))
+    (TOPOLOGIES / "water.parm7").write_text(amber(topology))
+
+
+def amber(topology):
+    """The sections of a topology of AMBER that tell atoms, residues and bonds; parmed writes none without a force field."""
+    atoms, residues = topology.atoms, topology.residues
+    bonds = [[3 * bond.atom1.idx, 3 * bond.atom2.idx, 1] for bond in topology.bonds]
+    sections = [
+        ("TITLE", "20a4", ["water"]),
+        ("POINTERS", "10I8", [len(atoms), 1, len(bonds), 0] + [0] * 7 + [len(residues)] + [0] * 20),
+        ("ATOM_NAME", "20a4", [atom.name for atom in atoms]),
+        ("CHARGE", "5E16.8", [atom.charge * 18.2223 for atom in atoms]),
+        ("ATOMIC_NUMBER", "10I8", [atom.atomic_number for atom in atoms]),
+        ("MASS", "5E16.8", [atom.mass for atom in atoms]),
+        ("RESIDUE_LABEL", "20a4", [residue.name for residue in residues]),
+        ("RESIDUE_POINTER", "10I8", [residue.atoms[0].idx + 1 for residue in residues]),
+        ("BONDS_INC_HYDROGEN", "10I8", sum(bonds, [])),
+        ("BONDS_WITHOUT_HYDROGEN", "10I8", []),
+        ("AMBER_ATOM_TYPE", "20a4", [atom.type for atom in atoms]),
+    ]
+    text = "%VERSION  VERSION_STAMP = V0001.000  DATE = 01/01/26  00:00:00\n"
+    for name, form, values in sections:
+        count, style = {"20a4": (20, "{:<4}"), "10I8": (10, "{:8d}"), "5E16.8": (5, "{:16.8E}")}[form]
+        words = [style.format(value) for value in values]
+        rows = ["".join(words[at:at + count]) for at in range(0, len(words), count)] or [""]
+        text += f"%FLAG {name:<74}\n%FORMAT({form})\n" + "\n".join(rows) + "\n"
+    return text
 
 
 def records(data):

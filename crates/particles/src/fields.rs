@@ -6,6 +6,8 @@ type Separators = [bool; 256];
 const BLANKS: Separators = set(b" \t\r\x0B\x0C");
 const MARKS: Separators = set(b" \t\r\x0B\x0C,;");
 
+const LISTS: Separators = set(b" \t\r[],'\"");
+
 const fn set(bytes: &[u8]) -> Separators {
     let mut table = [false; 256];
     let mut at = 0;
@@ -33,6 +35,12 @@ impl<'l> Fields<'l> {
     #[inline]
     pub(crate) fn blanks(line: &'l [u8]) -> Self {
         Self { rest: line, separators: &BLANKS }
+    }
+
+    /// Returns the items of a list in brackets, after the dash of a list of lists.
+    pub(crate) fn list(line: &'l [u8]) -> Self {
+        let line = line.trim_ascii_start();
+        Self { rest: line.strip_prefix(b"- ").unwrap_or(line), separators: &LISTS }
     }
 
     /// Returns the fields separated by blanks, commas or semicolons, up to a `#`.
@@ -69,6 +77,7 @@ mod tests {
     fn fields_are_never_empty() {
         assert_eq!(texts(Fields::blanks(b" a\t b,c  ")), ["a", "b,c"]);
         assert_eq!(texts(Fields::marks(b",1;;2 # 3")), ["1", "2"]);
+        assert_eq!(texts(Fields::list(b"  - [ -1, 'b', ]")), ["-1", "b"]);
         assert!(texts(Fields::blanks(b" \t ")).is_empty());
         assert!(texts(Fields::marks(b"")).is_empty());
     }

@@ -35,15 +35,11 @@ struct Head<'a> {
 
 /// Conversions to supported formats; `{file}` is replaced by the file, `{stem}` by its name without
 /// extension.
-const WITH_TOPOLOGY: &str = "convert it together with the file that names its atoms: python3 -c \"import MDAnalysis; \
-     MDAnalysis.Universe('TOPOLOGY', '{file}').atoms.write('{stem}.xyz', frames='all')\"";
 const TRAJECTORY: &str = "convert it: gmx trjconv -f {file} -s topol.tpr -o {stem}.gro; or, without the file that names \
      its atoms: python3 -c \"import MDAnalysis; MDAnalysis.Universe('{file}', '{file}', \
      topology_format='MINIMAL').atoms.write('{stem}.xyz', frames='all')\"";
 const ATOMS: &str = "convert it: python3 -c \"import MDAnalysis; MDAnalysis.Universe('{file}').atoms.write('{stem}.xyz')\"";
 const MOLECULES: &str = "convert it: obabel {file} -O {stem}.xyz";
-const TOPOLOGY: &str = "it has no positions: read those beside it, as in python3 -c \"import MDAnalysis; \
-     MDAnalysis.Universe('{file}', 'TRAJECTORY').atoms.write('{stem}.xyz', frames='all')\"";
 const HDF5: &str = "write one of its arrays: python3 -c \"import h5py, numpy; numpy.save('{stem}.npy', \
      h5py.File('{file}')['NAME'][:])\"; h5ls -r {file} lists them";
 const MESH: &str = "write its points: python3 -c \"import meshio, numpy; numpy.save('{stem}.npy', \
@@ -109,7 +105,6 @@ const FORMATS: &[(Sign, &str, &str)] = &[
     (Binary(is_spreadsheet), "a workbook of a spreadsheet", SHEET),
     (Binary(is_gadget), "a snapshot of Gadget", GADGET),
     (Binary(is_tng), "a TNG trajectory of GROMACS", TRAJECTORY),
-    (Words(&["%version"]), "a topology of Amber", TOPOLOGY),
     (Words(&["title =", "title=", "variables =", "variables="]), "a Tecplot file", MESH),
     (Words(&["<!doctype html", "<html"]), "a web page (HTML)", PAGE),
     (Words(&["version https://git-lfs"]), "a pointer to a file that Git LFS keeps", LFS),
@@ -120,7 +115,6 @@ const FORMATS: &[(Sign, &str, &str)] = &[
     (Words(&["<"]), "an XML file", XML),
     (Text(|text| is_cube(&text.lines)), "a cube file of Gaussian", CUBE),
     (Text(|text| is_charmm(&text.lines)), "a coordinate file of CHARMM (CRD)", ATOMS),
-    (Text(|text| is_amber(&text.lines)), "a restart file of Amber", WITH_TOPOLOGY),
     (Text(|t| t.first == b"TITLE" && has_line(t.bytes, b"END")), "a GROMOS file (G96)", GROMOS),
     (Text(|t| t.first.starts_with(b"ZONE ") || t.first == b"ZONE"), "a Tecplot file", MESH),
     (Text(|t| t.first.starts_with(b"solid") && has_line(t.bytes, b"facet")), "an STL mesh", MESH),
@@ -256,20 +250,6 @@ fn is_charmm(lines: &[&[u8]]) -> bool {
         && rest.next().is_some_and(|row| Fields::blanks(row).count() >= 9)
 }
 
-/// Returns whether lines are a title, the number of atoms, and rows of six numbers, which are twelve
-/// characters wide and have seven decimals.
-fn is_amber(lines: &[&[u8]]) -> bool {
-    let count = lines.get(1).and_then(|line| Fields::blanks(line).next());
-    let is_number = |field: &[u8]| {
-        field.len() == 12 && field[4] == b'.' && number::parse(field.trim_ascii()).is_some()
-    };
-    let is_row = |row: &&[u8]| !row.is_empty() && row.len() <= 72 && row.chunks(12).all(is_number);
-    count.is_some_and(|count| number::whole(count).is_some())
-        && number::whole(lines[0]).is_none()
-        && lines.get(2).is_some_and(is_row)
-        && lines.get(3).is_none_or(|row| row.is_empty() || is_row(row))
-}
-
 /// Returns whether the first line of a Wavefront OBJ file is a vertex or names a material library.
 fn is_mesh(first: &[u8]) -> bool {
     let vertex = first.strip_prefix(b"v ").and_then(numbers);
@@ -319,12 +299,9 @@ mod tests {
     fn text_formats_are_named_with_a_command() {
         let cube =
             "title\ncomment\n 2 0.0 0.0 0.0\n 10 0.5 0 0\n 10 0 0.5 0\n 10 0 0 0.5\n 8 8.0 0 0 0\n";
-        let amber =
-            "\n    2\n   1.0000000   2.0000000   3.0000000   4.0000000   5.0000000   6.0000000\n";
         let charmm = "* TITLE\n*\n    1\n    1    1 ALA  N     1.0 2.0 3.0 PEP  1  0.0\n";
         for (content, words) in [
             (cube, ["cube", "-i cube"]),
-            (amber, ["Amber", "TOPOLOGY"]),
             (charmm, ["CRD", "MDAnalysis"]),
             ("# vtk DataFile Version 3.0\nx\nASCII\n", ["VTK", "meshio.read('in.txt').points"]),
             ("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\">\n", ["VTK", "meshio"]),
@@ -419,7 +396,6 @@ mod tests {
 
     #[test]
     fn similar_text_files_are_not_named() {
-        let amber = "   1.0000000   2.0000000   3.0000000\n";
         for content in [
             "solid x y z\n1 2 3 4\n",
             "x y z name\n1 2 3 facet\nfacet 1 2 3\n",
@@ -433,8 +409,6 @@ mod tests {
             "a\n1 2 3 4\n1 2 3\n1 2 3\n1 2 3\n2\nC 1 2 3\n",
             "a\nb\n0.5 1 2 3\n0.5 1 2 3\n0.5 1 2 3\n0.5 1 2 3\n1 2 3 4 5\n",
             "a\nb\n1 2 3 4\n1 2 3 4\n1 2 3 4\n1 2 3 4",
-            &format!("2\n2\n{amber}"),
-            &format!("a\n2\n{}", amber.replace("2.0000000", "2.000000x")),
             "ANIMSTEPS x y\n1 2 3\n",
             "v 1\nv 2\n",
         ] {

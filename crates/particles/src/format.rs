@@ -57,11 +57,19 @@ pub enum Format {
     Cfg,
     /// PSF of CHARMM and NAMD: a topology, without positions.
     Psf,
+    /// `prmtop` or `parm7` of AMBER: a topology, without positions.
+    Prmtop,
+    /// `rst7` or `inpcrd` of AMBER: a restart file in text.
+    Restart,
+    /// A trajectory of ASE.
+    AseTrajectory,
+    /// BinaryCIF: mmCIF in MessagePack.
+    BinaryCif,
 }
 
 impl Format {
     /// All formats with their names in scene files and on the command line.
-    pub const ALL: [(&'static str, Self); 25] = [
+    pub const ALL: [(&'static str, Self); 29] = [
         ("xyzr", Self::Xyzr),
         ("csv", Self::Csv),
         ("xyz", Self::Xyz),
@@ -87,11 +95,23 @@ impl Format {
         ("xsf", Self::Xsf),
         ("cfg", Self::Cfg),
         ("psf", Self::Psf),
+        ("prmtop", Self::Prmtop),
+        ("rst7", Self::Restart),
+        ("ase", Self::AseTrajectory),
+        ("bcif", Self::BinaryCif),
     ];
 
     /// Returns whether files of this format have positions alone, and a topology tells what they are of.
     pub(crate) fn lacks_names(self) -> bool {
-        matches!(self, Self::Dcd | Self::Xtc | Self::Trr | Self::NetCdf | Self::Hdf5)
+        matches!(
+            self,
+            Self::Dcd | Self::Xtc | Self::Trr | Self::NetCdf | Self::Hdf5 | Self::Restart
+        )
+    }
+
+    /// Returns whether files of this format are topologies, which lack positions.
+    pub(crate) fn lacks_positions(self) -> bool {
+        matches!(self, Self::Psf | Self::Prmtop)
     }
 
     /// Returns the name in scene files and on the command line.

@@ -4,8 +4,8 @@ use crate::format::Format;
 use crate::frame_reader::FrameReader;
 use crate::source::Source;
 use crate::{
-    FileError, ReadOptions, cfg, cif, csv, dcd, gro, gromacs, gsd, hdf5, lammps, mol2, molfile,
-    netcdf, numpy, pdb, ply, poscar, pqr, psf, text, xsf, xyz,
+    FileError, ReadOptions, amber, ase, cfg, cif, csv, dcd, gro, gromacs, gsd, hdf5, lammps, mol2,
+    molfile, netcdf, numpy, pdb, ply, poscar, pqr, psf, text, xsf, xyz,
 };
 
 /// A test of the head of a file.
@@ -46,7 +46,7 @@ macro_rules! row {
 use Sign::{Signature, Structure, Words};
 
 /// All formats.
-pub(crate) const ROWS: [Row; 25] = [
+pub(crate) const ROWS: [Row; 29] = [
     row!(Xyzr, Words, |source, options| text::Rows::new(source, options)),
     row!(Csv, Words, |source, options| csv::Csv::new(source, options)),
     row!(Xyz, Words, |source, options| xyz::Xyz::new(source, options)),
@@ -54,7 +54,7 @@ pub(crate) const ROWS: [Row; 25] = [
     row!(LammpsData, Words, |source, options| lammps::Data::new(source, options)),
     row!(Gro, Words, |source, options| gro::Gro::new(source, options)),
     row!(Pdb, Words, |source, options| pdb::Pdb::new(source, options)),
-    row!(MmCif, Words, |source, options| cif::MmCif::new(source, options)),
+    row!(MmCif, Words, |source, options| cif::MmCif::new(Format::MmCif, source, options)),
     row!(Cif, Words, |source, options| cif::Crystal::new(source, options)),
     row!(Gsd, Signature(|head| head.starts_with(&gsd::MAGIC)), |source, options| {
         gsd::Gsd::new(source, options)?
@@ -88,6 +88,20 @@ pub(crate) const ROWS: [Row; 25] = [
     row!(Xsf, Structure(xsf::is_xsf), |source, options| xsf::Xsf::new(source, options)),
     row!(Cfg, Structure(cfg::is_cfg), |source, options| cfg::Cfg::new(source, options)),
     row!(Psf, Structure(psf::is_psf), |source, options| psf::Psf::new(source, options)),
+    row!(Prmtop, Structure(amber::is_prmtop), |source, options| amber::Prmtop::new(
+        source, options
+    )),
+    row!(Restart, Structure(amber::is_restart), |source, options| amber::Restart::new(
+        source, options
+    )),
+    row!(AseTrajectory, Signature(ase::is_trajectory), |source, options| {
+        ase::Trajectory::new(source, options)?
+    }),
+    row!(BinaryCif, Signature(cif::is_binary), |source, options| cif::MmCif::new(
+        Format::BinaryCif,
+        cif::decoded(source)?,
+        options
+    )),
 ];
 
 /// Returns the row of a format.

@@ -9,8 +9,9 @@
 //!
 //! XYZ and extended XYZ, LAMMPS dumps and data files, GRO, PDB, mmCIF, CIF of crystals with their
 //! symmetry, GSD, PLY, NPY and NPZ, tables and plain columns are recognized by their content, and so are the
-//! trajectories DCD, XTC, TRR and NetCDF of Amber, whose particles a topology names, PQR, POSCAR and XDATCAR,
-//! SDF, MOL2, XSF, CFG, PSF, and HDF5 of H5MD, mdtraj and Gadget. Files may be compressed with gzip, bzip2, xz or zstd.
+//! trajectories DCD, XTC, TRR, NetCDF and restart files of Amber, whose particles a topology names, POSCAR, XDATCAR,
+//! PQR, SDF, MOL2, XSF, CFG, BinaryCIF, trajectories of ASE, and HDF5 of H5MD, mdtraj and Gadget; topologies are
+//! PSF, those of Amber, or any other file. Files may be compressed with gzip, bzip2, xz or zstd.
 //!
 //! Every reader streams: it stores columns, never the file, and doesn't allocate by counts in the file.
 //! A malformed number is an error with its line. To add a format, add it to [`Format`], its detection to
@@ -33,6 +34,8 @@
 
 mod aliases;
 mod alternates;
+mod amber;
+mod ase;
 mod binary;
 pub mod bonds;
 mod builder;

@@ -198,7 +198,7 @@ pub(crate) fn open_positions(
     options: &ReadOptions,
 ) -> Result<Box<dyn FrameReader>, FileError> {
     let (format, reader) = open(path, options)?;
-    if format == Format::Psf {
+    if format.lacks_positions() {
         let error = FileError::whole_file(path, "is a topology, without positions");
         let name = path.display();
         return Err(error.with_help(format!("name a trajectory, and give it --topology {name}")));

@@ -10,8 +10,8 @@ use crate::{
 /// Help that lists the formats that can be detected.
 const KNOWN: &str = "files of particles are rows of `x y z [radius]`, tables with a header that \
                      names x, y and z, XYZ, dumps and data files of LAMMPS, GRO, PDB, mmCIF, CIF \
-                     of crystals, GSD, PLY, arrays of NumPy, DCD, XTC, TRR and NetCDF of Amber, PQR, \
-                     POSCAR, SDF, MOL2, XSF, CFG, PSF and H5MD; of others, name the format, as in --format xyz, \
+                     of crystals, BinaryCIF, GSD, PLY, arrays of NumPy, DCD, XTC, TRR, NetCDF, restart files \
+                     and topologies of Amber, trajectories of ASE, PQR, POSCAR, SDF, MOL2, XSF, CFG, PSF and H5MD; of others, name the format, as in --format xyz, \
                      or the columns, as in --format csv --columns x=NAME,y=NAME,z=NAME";
 
 /// Maximum number of lines before the number of atoms in a LAMMPS data file.
@@ -137,8 +137,12 @@ fn detect(head: &[u8], options: &ReadOptions) -> Result<Format, String> {
 }
 
 /// Returns the format of a file that begins with a format's keyword.
-fn detect_keyword<'l>(first: &[u8], lines: impl Iterator<Item = &'l [u8]>) -> Option<Format> {
-    if first.starts_with(b"ITEM:") {
+fn detect_keyword<'l>(first: &[u8], mut lines: impl Iterator<Item = &'l [u8]>) -> Option<Format> {
+    let has_frame = |line: &[u8]| line.starts_with(b"creator: LAMMPS");
+    if first.starts_with(b"ITEM:")
+        || has_frame(first)
+        || first == b"---" && lines.next().is_some_and(has_frame)
+    {
         return Some(Format::LammpsDump);
     }
     if first.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"data_")) {

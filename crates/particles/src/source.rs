@@ -141,7 +141,8 @@ fn comments(text: &[u8]) -> usize {
     lines.take_while(is_comment).map(<[u8]>::len).sum()
 }
 
-fn head(reader: &mut impl Read) -> io::Result<Vec<u8>> {
+/// Reads the head of a file.
+pub(crate) fn head(reader: &mut impl Read) -> io::Result<Vec<u8>> {
     let mut head = Vec::new();
     reader.take(HEAD as u64).read_to_end(&mut head)?;
     Ok(head)

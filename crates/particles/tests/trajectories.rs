@@ -4,8 +4,8 @@
 #![allow(clippy::disallowed_methods, reason = "tests compare with tolerances")]
 
 use spherule_particles::{
-    Columns, Element, FileError, Format, FrameChoice, Frames, LengthUnit, ParticleFrame,
-    ReadOptions, count_frames, read_frame,
+    BondSource, Columns, Element, FileError, Format, FrameChoice, Frames, LengthUnit,
+    ParticleFrame, ReadOptions, count_frames, read_frame,
 };
 use std::path::{Path, PathBuf};
 
@@ -153,7 +153,7 @@ fn steps_and_times_are_those_of_the_file() {
 
 #[test]
 fn topologies_name_particles() {
-    for topology in ["water.gro", "water.pdb", "water.pqr", "water.psf"] {
+    for topology in ["water.gro", "water.pdb", "water.pqr", "water.psf", "water.parm7"] {
         for name in SAME {
             let options = with_topology(topology, "resname,resid");
             let frame = read(name, &ReadOptions { frame: FrameChoice::Index(2), ..options });
@@ -193,19 +193,86 @@ fn radii_of_topologies_are_in_the_unit_of_the_trajectory() {
 
 #[test]
 fn topologies_without_positions_are_no_particle_files() {
-    let path = data("topologies", "water.psf");
-    let error = read_frame(&path, &ReadOptions::default()).expect_err("no positions");
-    assert_eq!(error.message, "is a topology, without positions");
-    assert!(error.help.is_some_and(|help| help.contains("--topology")));
-    let options = with_topology("water.psf", "segid,mass,charge");
-    let frame = read("water.dcd", &options);
-    let value = |name: &str| {
-        let column = frame.numbers.iter().find(|column| column.name == name).expect("a column");
-        column.values[183]
+    for (name, segments) in [("water.psf", &["W"][..]), ("water.parm7", &[])] {
+        let path = data("topologies", name);
+        let error = read_frame(&path, &ReadOptions::default()).expect_err("no positions");
+        assert_eq!(error.message, "is a topology, without positions");
+        assert!(error.help.is_some_and(|help| help.contains("--topology")));
+        let columns = if segments.is_empty() { "mass,charge" } else { "segid,mass,charge" };
+        let frame = read("water.dcd", &with_topology(name, columns));
+        let value = |name: &str| {
+            let column = frame.numbers.iter().find(|column| column.name == name).expect("a column");
+            column.values[183]
+        };
+        assert!((value("charge") - 1.0).abs() < 1e-8, "{name}");
+        assert_eq!((value("mass"), frame.numbers.len()), (22.9898, 2), "{name}");
+        let texts: Vec<_> = frame.texts.iter().map(|column| column.text(0)).collect();
+        assert_eq!(texts, segments, "{name}");
+        assert!(frame.position(0).is_finite());
+    }
+}
+
+#[test]
+fn topologies_of_amber_have_the_bonds_of_others() {
+    let bonds = |topology: &str| {
+        let options = ReadOptions { bonds: BondSource::File, ..with_topology(topology, "") };
+        read("water.dcd", &options).bonds.expect("bonds")
     };
-    assert_eq!((value("charge"), value("mass"), frame.numbers.len()), (1.0, 22.9898, 2));
-    assert_eq!(frame.texts.iter().map(|column| column.text(0)).collect::<Vec<_>>(), ["W"]);
-    assert!(frame.position(0).is_finite());
+    let (own, other) = (bonds("water.parm7"), bonds("water.psf"));
+    assert_eq!(own.len(), other.len());
+    assert!(own.len() > 100 && own == other);
+}
+
+#[test]
+fn damaged_topologies_and_restart_files_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let fault = |source: PathBuf, from: &str, to: &str| {
+        let text = std::fs::read_to_string(source).expect("a file");
+        assert!(text.contains(from), "{from}");
+        let path = folder.path().join("damaged");
+        std::fs::write(&path, text.replacen(from, to, 1)).expect("a file");
+        path
+    };
+    for (from, to, expected) in [
+        ("%FLAG POINTERS", "%FLAG POINTS", "POINTERS"),
+        ("     184       1", "     185       1", "185 atoms"),
+        ("%FORMAT(20a4)\nOW", "%FORMAT(20)\nOW", "format"),
+        ("       0       3       1", "       0     600       1", "atom 201"),
+        ("       0       3       1", "       0       4       1", "atom"),
+    ] {
+        let topology = Some(fault(data("topologies", "water.parm7"), from, to));
+        let options = ReadOptions { topology, bonds: BondSource::File, ..ReadOptions::default() };
+        let error = read_frame(&trajectory("water.dcd"), &options).expect_err(from);
+        assert!(error.to_string().contains(expected), "{from}: {error}");
+    }
+    for (from, to, expected) in [
+        ("   12", "   11", "neither velocities nor a box"),
+        ("   12", "  112", "of 112 atoms"),
+        ("   9.0000000", "   9.000x000", "not a number"),
+    ] {
+        let path = fault(trajectory("water.rst7"), from, to);
+        let options = ReadOptions { format: Some(Format::Restart), ..ReadOptions::default() };
+        let error = read_frame(&path, &options).expect_err(from);
+        assert!(error.to_string().contains(expected), "{from}: {error}");
+    }
+}
+
+#[test]
+fn restart_files_and_trajectories_of_ase_have_velocities() {
+    let columns = |columns: &str| ReadOptions {
+        columns: columns.parse().expect("columns"),
+        ..ReadOptions::default()
+    };
+    let frame = read("water.rst7", &columns("vx,vy,vz"));
+    assert_eq!((frame.title.as_str(), frame.time), ("four molecules", Some(12.5)));
+    assert!(frame.numbers.iter().all(|column| (column.values[11] - 0.25).abs() < 1e-5));
+    let options = ReadOptions { frame: FrameChoice::Last, ..columns("momenta_x,charges") };
+    let frame = read("water.traj", &options);
+    assert_eq!(types(&frame), [("O", "O"), ("H", "H"), ("H", "H"), ("O", "O")]);
+    // Momenta are masses times velocities.
+    let values: Vec<f64> = frame.numbers.iter().map(|column| column.values[0]).collect();
+    assert!((values[0] - 0.02 * 15.999).abs() < 1e-9 && values[1] == -1.6, "{values:?}");
+    assert_eq!(frame.cell.map(|cell| cell.periodic), Some([true, true, false]));
 }
 
 /// Names of types and symbols of elements of the first rows.

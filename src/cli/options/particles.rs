@@ -16,8 +16,8 @@ use std::path::{Path, PathBuf};
 #[command(next_help_heading = "Particle files")]
 pub(in crate::cli) struct ParticleArgs {
     /// File format [default: detected]: xyzr, csv, xyz, lammps-dump, lammps-data, gro, pdb, mmcif, cif, gsd,
-    /// ply, npy, npz, dcd, xtc, trr, netcdf, hdf5, pqr, poscar, sdf, mol2, xsf, cfg
-    /// or psf
+    /// ply, npy, npz, dcd, xtc, trr, netcdf, hdf5, pqr, poscar, sdf, mol2, xsf, cfg,
+    /// psf, prmtop, rst7, ase or bcif
     #[arg(long, value_parser = |name: &str| values::named(&Format::ALL, name, "formats are"))]
     format: Option<Format>,
     /// Meaning of columns, as in x=px,radius=size,type=species

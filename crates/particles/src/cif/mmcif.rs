@@ -19,6 +19,7 @@ const NUMBERS: [&str; 3] = ["occupancy", "B_iso_or_equiv", "pdbx_formal_charge"]
 
 /// Reads the models of a file, one frame each.
 pub(in super::super) struct MmCif {
+    format: Format,
     tokens: Tokens,
     options: ReadOptions,
     sites: Option<Sites>,
@@ -105,8 +106,10 @@ impl AlternateColumns {
 }
 
 impl MmCif {
-    pub(in super::super) fn new(source: Source, options: &ReadOptions) -> Self {
+    /// Creates the reader of mmCIF, or of the text of BinaryCIF.
+    pub(in super::super) fn new(format: Format, source: Source, options: &ReadOptions) -> Self {
         Self {
+            format,
             tokens: Tokens::new(Lines::new(source)),
             options: options.clone(),
             sites: None,
@@ -259,7 +262,7 @@ impl FrameReader for MmCif {
     fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
         while self.is_open()? {
             let Some(schema) = self.sites.as_ref().map(|sites| sites.schema.clone()) else { break };
-            let mut builder = Builder::new(self.tokens.path(), Format::MmCif, &schema);
+            let mut builder = Builder::new(self.tokens.path(), self.format, &schema);
             builder.declare(&[], &NUMBERS);
             let mut alternates = Alternates::default();
             let mut atoms = self.connections.is_some().then(|| Atoms::new(&schema.names));

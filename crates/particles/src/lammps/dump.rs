@@ -1,7 +1,7 @@
-//! LAMMPS dumps in text: frames of `ITEM:` sections (<https://docs.lammps.org/dump.html>).
+//! LAMMPS dumps in text: frames of `ITEM:` sections, or in YAML (<https://docs.lammps.org/dump.html>).
 
 use super::bounds::{tilted, tilted_from_bounds};
-use super::unit;
+use super::{unit, yaml};
 use crate::lines::{Line, Lines};
 use crate::{
     Cell, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, Role, builder::Builder,
@@ -28,22 +28,24 @@ pub(in super::super) struct Dump {
     options: ReadOptions,
     /// Units of the earlier frames: only the first must declare them.
     units: LengthUnit,
+    /// True once a frame in YAML began.
+    is_yaml: bool,
 }
 
 /// The header of a frame.
 #[derive(Default)]
-struct Head {
-    step: Option<i64>,
-    time: Option<f64>,
-    count: Option<u64>,
-    cell: Option<Cell>,
-    names: Vec<String>,
+pub(super) struct Head {
+    pub(super) step: Option<i64>,
+    pub(super) time: Option<f64>,
+    pub(super) count: Option<u64>,
+    pub(super) cell: Option<Cell>,
+    pub(super) names: Vec<String>,
 }
 
 impl Dump {
     pub(in super::super) fn new(source: Source, options: &ReadOptions) -> Self {
         let lines = Lines::new(source);
-        Self { lines, options: options.clone(), units: LengthUnit::Unknown }
+        Self { lines, options: options.clone(), units: LengthUnit::Unknown, is_yaml: false }
     }
 
     /// Reads a frame up to the column names of atoms; returns `None` at the end of the file.
@@ -53,6 +55,11 @@ impl Dump {
         while let Some(line) = self.lines.next()? {
             if line.is_blank() {
                 continue;
+            }
+            if self.is_yaml || yaml::begins(line.bytes) {
+                self.is_yaml = true;
+                self.lines.back();
+                return yaml::head(&mut self.lines, &mut self.units);
             }
             any = true;
             let text = line.text();
@@ -174,7 +181,11 @@ impl FrameReader for Dump {
         for atom in 0..count {
             let help = "the file is cut off; choose an earlier frame";
             let line = self.lines.row(atom, count, "atoms", help)?;
-            builder.row(&line, line.fields())?;
+            if self.is_yaml {
+                builder.row(&line, yaml::values(&line))?;
+            } else {
+                builder.row(&line, line.fields())?;
+            }
         }
         let mut frame = builder.finish();
         if scaled {

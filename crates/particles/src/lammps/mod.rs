@@ -5,6 +5,7 @@ mod data;
 mod dump;
 mod style;
 mod velocities;
+mod yaml;
 
 pub(super) use data::Data;
 pub(super) use dump::Dump;
