@@ -11,7 +11,7 @@ use spherule::query::{Hits, NOTHING, QueryError, RayColumns, RayRows, Surface};
 use std::borrow::Cow;
 
 /// The most rays of a task: as many as are put in order together.
-const BATCH: usize = 1 << 16;
+const ROWS_AT_ONCE: usize = 1 << 16;
 
 /// The fewest rays of a task.
 const SMALL: usize = 1 << 11;
@@ -281,7 +281,7 @@ fn fill_bounds(t: &mut [f64], bound: Option<ArrayView1<f64>>, first: usize) {
 
 /// The number of rays of a task.
 fn task(count: usize, threads: usize) -> usize {
-    count.div_ceil(4 * threads).clamp(SMALL, BATCH)
+    count.div_ceil(4 * threads).clamp(SMALL, ROWS_AT_ONCE)
 }
 
 /// Sets the distance of rays that hit nothing to infinity; the query leaves them their bounds.

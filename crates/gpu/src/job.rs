@@ -1,6 +1,6 @@
 //! The numbers of a job, as kernels get them.
 
-use crate::lights::{self, LightNumbers};
+use crate::lights::{self, LightUniforms};
 use crate::materials;
 use crate::tree::FAR;
 use bytemuck::{Pod, Zeroable};
@@ -9,7 +9,7 @@ use spherule_render::world::{DeviceIntegration, DeviceJob, DeviceLightChoice, De
 /// The numbers of a job, as `job.wgsl` has them.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
-pub(crate) struct JobNumbers {
+pub(crate) struct JobUniforms {
     frame: [[f64; 3]; 4],
     size: [[f64; 2]; 2],
     lens_radius: f64,
@@ -30,7 +30,7 @@ pub(crate) struct JobNumbers {
     background: [f32; 3],
     threshold: f32,
     survival: f32,
-    lights: LightNumbers,
+    lights: LightUniforms,
     shadow_samples: u32,
     all_shadows: u32,
     /// So that the size is a multiple of a double's.
@@ -57,7 +57,7 @@ mod flag {
 }
 
 /// What integrators have in different ways.
-struct IntegrationNumbers {
+struct IntegrationUniforms {
     flags: u32,
     distance: f64,
     depth: u32,
@@ -66,12 +66,12 @@ struct IntegrationNumbers {
     shadow_samples: u32,
 }
 
-impl JobNumbers {
+impl JobUniforms {
     /// Returns the numbers of a job with these lights.
-    pub(crate) fn of(job: &DeviceJob, lights: LightNumbers) -> Self {
+    pub(crate) fn of(job: &DeviceJob, lights: LightUniforms) -> Self {
         let (camera, sky, ground) = (&job.camera, &job.sky, &job.world.ground);
         let (slope, toward) = sky.gradient.unwrap_or_default();
-        let own = IntegrationNumbers::of(job.integration);
+        let own = IntegrationUniforms::of(job.integration);
         let flags = [
             (camera.orthographic, flag::ORTHOGRAPHIC),
             (camera.lens_radius > 0.0, flag::LENS),
@@ -128,7 +128,7 @@ pub(crate) fn shadow_samples(job: &DeviceJob) -> usize {
     delta + shadow_samples as usize * extended
 }
 
-impl IntegrationNumbers {
+impl IntegrationUniforms {
     fn of(integration: DeviceIntegration) -> Self {
         let far = f64::from(FAR);
         let mut numbers = Self {

@@ -16,7 +16,7 @@ const CHILDREN_BITS: u32 = 5;
 /// Numbers of lights, and where their rows begin.
 #[repr(C)]
 #[derive(Clone, Copy, Default, Pod, Zeroable)]
-pub(crate) struct LightNumbers {
+pub(crate) struct LightUniforms {
     emitters: u32,
     points: u32,
     suns: u32,
@@ -37,7 +37,7 @@ pub(crate) struct LightNumbers {
 }
 
 /// Returns the rows of all lights of a job, of four words each, and of what comes after them; and their numbers.
-pub(crate) fn rows(job: &DeviceJob) -> (Vec<[u32; 4]>, LightNumbers) {
+pub(crate) fn rows(job: &DeviceJob) -> (Vec<[u32; 4]>, LightUniforms) {
     let lights = &job.lights;
     let mut rows: Vec<[u32; 4]> = lights
         .emitters
@@ -47,12 +47,12 @@ pub(crate) fn rows(job: &DeviceJob) -> (Vec<[u32; 4]>, LightNumbers) {
             [r, g, b, sphere]
         })
         .collect();
-    let mut numbers = LightNumbers {
+    let mut numbers = LightUniforms {
         emitters: lights.emitters.len() as u32,
         points: lights.points.len() as u32,
         suns: lights.suns.len() as u32,
         sky_parts: lights.sky_parts as u32,
-        ..LightNumbers::default()
+        ..LightUniforms::default()
     };
     numbers.found_rows = rows.len() as u32;
     let mut found: Vec<[u32; 4]> = lights

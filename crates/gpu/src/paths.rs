@@ -4,7 +4,7 @@ use crate::columns::{BOUNCES, Columns, Needs};
 use crate::device::{Device, Size, Work};
 use crate::error::DeviceError;
 use crate::film;
-use crate::job::{self, JobNumbers};
+use crate::job::{self, JobUniforms};
 use crate::lights;
 use crate::materials;
 use crate::sky;
@@ -172,7 +172,7 @@ impl JobPaths {
                 nested_glass: job.world.features.nested_glass,
                 caustics: job.caustics.sampled,
             },
-            numbers: filled("job", bytemuck::bytes_of(&JobNumbers::of(job, light_numbers)))?,
+            numbers: filled("job", bytemuck::bytes_of(&JobUniforms::of(job, light_numbers)))?,
             lights: filled("lights", bytemuck::cast_slice(&lights))?,
             sky: filled(
                 "picture of the sky",

@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 const BRICKS: usize = 4;
 
 /// Rays of one dispatch at most.
-const BATCH: usize = 1 << 20;
+const QUEUED_RAYS: usize = 1 << 20;
 
 /// Words of a sphere and of a ray.
 const SPHERE: usize = 4;
@@ -131,7 +131,7 @@ impl DeviceTree {
             columns,
             brick_bits,
             is_cut: rows > 1 << brick_bits,
-            batch: BATCH.min(most as usize / size_of::<[u32; RAY]>()),
+            batch: QUEUED_RAYS.min(most as usize / size_of::<[u32; RAY]>()),
             lanes: Mutex::default(),
             tally: Mutex::default(),
         })

@@ -26,7 +26,7 @@ use std::marker::PhantomData;
 pub(super) const DONE: f32 = f32::NEG_INFINITY;
 
 /// Rays that are decided together in lanes.
-const ROW: usize = 8;
+const LANES: usize = 8;
 
 /// The state of a traversal's answers: rays, spheres, and the hits so far.
 pub(super) struct HitResolver<'a, Q> {
@@ -306,15 +306,15 @@ impl<Q: Query> HitResolver<'_, Q> {
     }
 }
 
-/// Single rays and their best candidates, which are decided when there are [`ROW`] of them.
+/// Single rays and their best candidates, which are decided when there are [`LANES`] of them.
 #[derive(Clone, Copy, Default)]
 struct PendingHits {
     count: usize,
-    ray: [Pair; ROW],
+    ray: [Pair; LANES],
     /// Distances before which no other sphere is hit.
-    runner_up: [f32; ROW],
+    runner_up: [f32; LANES],
     /// Distances before which the candidate is not hit.
-    near: [f32; ROW],
+    near: [f32; LANES],
 }
 
 /// Single rays, at the end of their traversal.
@@ -331,13 +331,13 @@ impl<Q: Query> HitResolver<'_, Q> {
             return;
         }
         let pending = &mut self.pending;
-        let place = pending.count % ROW;
+        let place = pending.count % LANES;
         pending.ray[place] = Pair { row, sphere };
         // Nothing beyond `t_max` was tested.
         pending.runner_up[place] = runner_up.min(nearest.t_max);
         pending.near[place] = nearest.near;
         pending.count = place + usize::from(sphere != MISS);
-        if pending.count == ROW {
+        if pending.count == LANES {
             self.flush_pending();
         }
     }

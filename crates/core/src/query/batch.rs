@@ -3,7 +3,7 @@
 use super::chunk::{ChunkRays, Rows};
 use super::columns::{Hits, RayTable, Surface, Tally};
 use super::load::PACKET;
-use super::reorder::{BATCH, SortedRays};
+use super::reorder::{SORTED_RAYS, SortedRays};
 use super::surface::PendingSurfaces;
 use super::{NOTHING, SphereTree};
 use crate::bvh::{Query, Traversal, decide_found, trace};
@@ -94,8 +94,8 @@ impl SphereTree {
             hits: ray::Hits::with_capacity(CHUNK.min(count)),
         };
         let mut sorted = SortedRays::taken();
-        for first in (0..count).step_by(BATCH) {
-            let batch = Rows { table, rows: first..count.min(first + BATCH) };
+        for first in (0..count).step_by(SORTED_RAYS) {
+            let batch = Rows { table, rows: first..count.min(first + SORTED_RAYS) };
             let is_sorted =
                 known.is_none() && self.sort_rays(&batch, answers.bounds(), &mut sorted);
             for first in (0..batch.rows.len()).step_by(CHUNK) {

@@ -14,7 +14,7 @@ use std::cell::Cell;
 use std::ops::Range;
 
 /// Number of rays that are sorted together.
-pub(super) const BATCH: usize = 1 << 18;
+pub(super) const SORTED_RAYS: usize = 1 << 18;
 
 /// Fewer rays are not worth a look.
 const FEW: usize = 1 << 10;

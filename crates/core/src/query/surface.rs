@@ -15,27 +15,27 @@ use glam::DVec3;
 const FAR: f64 = (1 << 20) as f64;
 
 /// Number of hits whose surfaces are computed together.
-const ROW: usize = 8;
+const LANES: usize = 8;
 
 /// Hits of a chunk whose surfaces are still to be computed.
 pub(super) struct PendingSurfaces {
     count: usize,
     /// Rows of rays in the chunk, and of spheres.
-    pairs: [Pair; ROW],
+    pairs: [Pair; LANES],
     /// The caller's rows of the rays.
-    of: [usize; ROW],
+    of: [usize; LANES],
 }
 
 impl PendingSurfaces {
     pub(super) const NONE: Self =
-        Self { count: 0, pairs: [Pair { row: 0, sphere: 0 }; ROW], of: [0; ROW] };
+        Self { count: 0, pairs: [Pair { row: 0, sphere: 0 }; LANES], of: [0; LANES] };
 
     /// Adds a hit; the caller flushes when it returns true.
     #[inline(always)]
     pub(super) fn push(&mut self, pair: Pair, of: usize) -> bool {
-        (self.pairs[self.count % ROW], self.of[self.count % ROW]) = (pair, of);
+        (self.pairs[self.count % LANES], self.of[self.count % LANES]) = (pair, of);
         self.count += 1;
-        self.count == ROW
+        self.count == LANES
     }
 }
 
@@ -90,7 +90,7 @@ impl SphereTree {
         let coordinates = |v: Vec3<F64x8>| [v.x, v.y, v.z].map(F64x8::to_array);
         let (point, normal) = (coordinates(point), coordinates(normal));
         for lane in 0..count {
-            let row = |columns: &[[f64; ROW]; 3]| [0, 1, 2].map(|axis| columns[axis][lane]);
+            let row = |columns: &[[f64; LANES]; 3]| [0, 1, 2].map(|axis| columns[axis][lane]);
             surfaces[pending.of[lane]] = Surface { point: row(&point), normal: row(&normal) };
         }
         for lane in set_bits(!clear.bits() & ((1 << count) - 1)) {

@@ -5,7 +5,7 @@
 use super::rounds::{Times, clock};
 use super::scenes::NamedScene;
 use super::{BenchError, Options, Progress};
-use crate::paper::{Threading, Tracer};
+use crate::paper::{PaperTracer, Threading};
 use crate::report::{Axis, Column, Plot, Point, Report, Series, Spread, Style, Table};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use spherule_render::image::{Image, compare};
@@ -84,7 +84,7 @@ fn measure_scene(
     };
     scene.scene.settings = settings.clone();
     let world = scene.world()?;
-    let paper = Tracer::new(&scene.scene, &world, true)?;
+    let paper = PaperTracer::new(&scene.scene, &world, true)?;
     let draw = |renderer: usize| {
         let threading = match renderer {
             0 => {

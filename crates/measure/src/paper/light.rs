@@ -1,6 +1,6 @@
 //! Lights (emissive spheres, points and suns), and direct lighting.
 
-use super::Tracer;
+use super::PaperTracer;
 use super::random::{Cells, Random};
 use super::shape::{EPSILON, Ray, Sphere};
 use glam::{DVec2, DVec3};
@@ -106,7 +106,7 @@ impl Light {
     }
 }
 
-impl Tracer {
+impl PaperTracer {
     /// Estimates direct light at a point from each light and the environment, with one sample for each
     /// cell. The normal faces the viewer.
     pub(super) fn direct_light(

@@ -30,7 +30,7 @@ use spherule_render::scene::{ConductorFresnel, InvalidSetting, Material, NamedMa
 use spherule_render::world::{Camera, Environment, Transform, World};
 
 /// A scene in the paper's data structures.
-pub struct Tracer {
+pub struct PaperTracer {
     spheres: Vec<Sphere>,
     hierarchy: Option<Node>,
     ground: Option<Ground>,
@@ -76,11 +76,11 @@ pub enum Unsupported {
     #[error("the paper's tracer supports only roulette = \"none\" or a probability")]
     Roulette,
     /// The depth is unlimited or too large for the stack.
-    #[error("the paper's tracer is recursive; use depth = {max} or less", max = Tracer::MAX_BOUNCES)]
+    #[error("the paper's tracer is recursive; use depth = {max} or less", max = PaperTracer::MAX_BOUNCES)]
     Depth,
 }
 
-impl Tracer {
+impl PaperTracer {
     /// Maximum depth that the stack has room for.
     pub const MAX_BOUNCES: u32 = 1000;
 

@@ -2,7 +2,7 @@
 
 use super::random::{Cells, Random, lock};
 use super::shape::Ray;
-use super::{Tracer, Unsupported};
+use super::{PaperTracer, Unsupported};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use spherule_render::image::Image;
@@ -64,7 +64,7 @@ impl Plan {
             Roulette::Fixed(probability) => probability,
             Roulette::Throughput => return Err(Unsupported::Roulette),
         };
-        let depth = settings.depth.filter(|depth| *depth <= Tracer::MAX_BOUNCES);
+        let depth = settings.depth.filter(|depth| *depth <= PaperTracer::MAX_BOUNCES);
         let depth = depth.ok_or(Unsupported::Depth)?;
         let (shadows, pixel) = (Cells::new(shadow_samples), Cells::new(settings.spp));
         Ok(Self { survival, depth, shadows, pixel })
@@ -78,12 +78,12 @@ impl Worker<'_> {
     }
 }
 
-impl Tracer {
+impl PaperTracer {
     /// Renders with the threads of the current rayon pool.
     ///
     /// # Errors
     /// A setting is out of range, or asks for another integrator, for roulette by throughput, or for
-    /// more than [`Tracer::MAX_BOUNCES`] bounces.
+    /// more than [`PaperTracer::MAX_BOUNCES`] bounces.
     pub fn render(&self, settings: &Settings, threading: Threading) -> Result<Render, Unsupported> {
         let plan = Plan::new(settings)?;
         let start = Instant::now();

@@ -19,8 +19,8 @@ fn load(name: &str, side: u32, spp: u32) -> Scene {
     scene
 }
 
-fn tracer(scene: &Scene, hierarchy: bool) -> Tracer {
-    Tracer::new(scene, &World::build(scene).unwrap(), hierarchy).unwrap()
+fn tracer(scene: &Scene, hierarchy: bool) -> PaperTracer {
+    PaperTracer::new(scene, &World::build(scene).unwrap(), hierarchy).unwrap()
 }
 
 fn render_paper(scene: &Scene, threading: Threading) -> Image {
@@ -94,7 +94,7 @@ fn furnace(material: Material) -> Scene {
     (settings.width, settings.height, settings.spp) = (24, 24, 16);
     settings.integrator = Integrator::Whitted { shadow_samples: 4 };
     settings.roulette = Roulette::None;
-    settings.depth = Some(Tracer::MAX_BOUNCES);
+    settings.depth = Some(PaperTracer::MAX_BOUNCES);
     scene
 }
 
@@ -243,7 +243,7 @@ fn images_are_reproducible_with_independent_rows_or_one_thread() {
 #[test]
 fn unsupported_scenes_and_settings_are_refused() {
     let mut scene = furnace(Material::Dielectric { ior: 1.5, color: Rgb::ONE });
-    let refused = Tracer::new(&scene, &World::build(&scene).unwrap(), true).err();
+    let refused = PaperTracer::new(&scene, &World::build(&scene).unwrap(), true).err();
     assert_eq!(refused, Some(Unsupported::Material("white".into())));
     scene.materials[0].material = Material::Lambertian { color: Rgb::ONE };
     let tracer = tracer(&scene, true);

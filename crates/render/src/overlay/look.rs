@@ -1,6 +1,6 @@
 //! All overlays of a scene's look.
 
-use super::{Ground, Matte, Overlay, Pen, draw_over};
+use super::{GroundLayers, Matte, Overlay, Pen, draw_over};
 use crate::image::Image;
 use crate::scene::Look;
 
@@ -18,7 +18,7 @@ impl Overlay<'_> {
         &self,
         image: &mut Image,
         look: &Look,
-        ground: Option<Ground>,
+        ground: Option<GroundLayers>,
     ) -> Option<Matte> {
         if look.depth_cue {
             self.fade(image, look.haze().to_array(), MAX_FADE);

@@ -1,6 +1,6 @@
 //! Mattes: pictures without their background, with the coverage of spheres and their shadows.
 
-use super::{Ground, Overlay};
+use super::{GroundLayers, Overlay};
 use crate::image::{Image, tone};
 
 /// Coverage of each pixel by what is not background, row by row.
@@ -36,7 +36,7 @@ impl Overlay<'_> {
     /// Removes environment and ground from a picture: the result has the light of spheres,
     /// premultiplied by their coverage. `ground` is the ground's light and shadow, if there is a
     /// ground.
-    pub fn remove_background(&self, image: &mut Image, ground: Option<Ground>) -> Matte {
+    pub fn remove_background(&self, image: &mut Image, ground: Option<GroundLayers>) -> Matte {
         let width = self.region.width as usize;
         let mut coverage = Vec::with_capacity(image.pixels.len());
         for (row, (pixel, seen)) in image.pixels.iter_mut().zip(&self.layers.pixels).enumerate() {

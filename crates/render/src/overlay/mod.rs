@@ -22,7 +22,7 @@ pub use canvas::{Canvas, settings_of_layers};
 pub use lines::{Line, Pen};
 pub use matte::{Matte, draw_alpha, draw_over};
 pub use range::{RunBounds, depths};
-pub use shadow::{Ground, GroundRender, ground};
+pub use shadow::{GroundLayers, GroundRender, ground};
 
 use crate::film::Region;
 use crate::image::Image;

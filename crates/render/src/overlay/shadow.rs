@@ -7,7 +7,7 @@ use crate::world::{CameraVisible, World};
 
 /// The ground without the spheres in front of it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Ground {
+pub struct GroundLayers {
     /// The visible ground in the light that spheres let through; the environment where it is not
     /// visible.
     pub lit: Image,
@@ -74,10 +74,10 @@ impl GroundRender {
     }
 
     /// Returns the result so far.
-    pub fn ground(&self) -> Ground {
+    pub fn ground(&self) -> GroundLayers {
         let (lit, bare) = (self.lit.film().resolve(), self.bare.film().resolve());
         let shadow = blocked(&lit, &bare);
-        Ground { lit, shadow }
+        GroundLayers { lit, shadow }
     }
 }
 
@@ -100,7 +100,7 @@ pub fn ground(
     world: &mut World,
     settings: &Settings,
     options: &Options,
-) -> Result<Option<Ground>, RenderError> {
+) -> Result<Option<GroundLayers>, RenderError> {
     let Some(mut render) = GroundRender::begin(world, settings, options)? else {
         return Ok(None);
     };

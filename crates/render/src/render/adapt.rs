@@ -9,7 +9,7 @@ use super::watch::Watch;
 use crate::elementary::pow;
 use crate::film::{TILE, Tile, View};
 use crate::integrator::Job;
-use crate::integrator::workspace::{BATCH, Workspace};
+use crate::integrator::workspace::{BATCH_PATHS, Workspace};
 use crate::noise::{self, Noise, Slope, StopCondition};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -156,7 +156,7 @@ fn advance(job: &Job, tiles: &mut [&mut Tile], to: u32, watch: &Watch, work: &mu
     while first < to {
         let end = to.min(first.saturating_add(PASS));
         let paths = (TILE * TILE * (end - first)) as usize;
-        for tiles in tiles.chunks_mut((BATCH / paths).max(1)) {
+        for tiles in tiles.chunks_mut((BATCH_PATHS / paths).max(1)) {
             if watch.cancelled() {
                 return;
             }
@@ -191,7 +191,7 @@ fn batches(
             left -= paths;
             tiles.push(tile);
         } else {
-            left = BATCH.saturating_sub(paths);
+            left = BATCH_PATHS.saturating_sub(paths);
             batches.push((vec![tile], to));
         }
     }

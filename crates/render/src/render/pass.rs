@@ -5,7 +5,7 @@ use crate::integrator::Job;
 use crate::integrator::clock::Stage;
 use crate::integrator::generate::generate_streams;
 use crate::integrator::probe_batch::ProbeBatch;
-use crate::integrator::workspace::{BATCH, Workspace};
+use crate::integrator::workspace::{BATCH_PATHS, Workspace};
 use crate::sampling::Sampler;
 use crate::scene::Rgb;
 use crate::world::World;
@@ -144,7 +144,7 @@ pub(super) fn probe_pass(
         let streams = tiles.iter().map(|tile| tile.probes.streams());
         let taken = tiles.iter().map(|tile| tile.probes.samples).max().unwrap_or(0);
         let first = samples.start + taken;
-        let Some(batch) = BATCH.checked_div(streams.clone().sum()) else { return };
+        let Some(batch) = BATCH_PATHS.checked_div(streams.clone().sum()) else { return };
         if first >= samples.end || !proceed() {
             return;
         }

@@ -7,7 +7,7 @@ use crate::image::Image;
 use crate::integrator::Job;
 use crate::integrator::generate::{dither_thresholds, generate_centers};
 use crate::integrator::preview::{self, Lighting};
-use crate::integrator::workspace::{BATCH, Workspace};
+use crate::integrator::workspace::{BATCH_PATHS, Workspace};
 use crate::scene::{Integrator, Rgb, Settings};
 use crate::world::{Irradiance, World};
 use rayon::prelude::*;
@@ -15,7 +15,7 @@ use std::f32::consts::PI;
 use std::sync::atomic::Ordering;
 
 /// Tiles whose paths fill a batch.
-const TILES: usize = BATCH / (TILE * TILE) as usize;
+const TILES: usize = BATCH_PATHS / (TILE * TILE) as usize;
 
 /// Renders a picture without noise: one ray per pixel, through its middle, direct light from the middles of lights, and
 /// unhidden light of the environment. `shadows` is true if lights cast them, which takes a tenth to a third more time.

@@ -2,7 +2,7 @@
 
 use super::pass::PASS;
 use crate::film::TILE;
-use crate::integrator::workspace::BATCH;
+use crate::integrator::workspace::BATCH_PATHS;
 use std::ops::Range;
 
 /// Minimum number of times that each thread takes tasks: then all threads end at about the same time.
@@ -72,7 +72,7 @@ impl Schedule {
     /// smaller batches take longer, unless too few tasks would remain for the other threads.
     pub(super) fn at_once(&self) -> usize {
         let paths = (TILE * TILE * self.spp.clamp(1, PASS)) as usize;
-        (BATCH / paths).min(self.passes / (TURNS * self.threads)).max(1)
+        (BATCH_PATHS / paths).min(self.passes / (TURNS * self.threads)).max(1)
     }
 
     /// Returns the tasks with samples that a thread takes at once, from a number on; `None` after the

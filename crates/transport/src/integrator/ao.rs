@@ -6,14 +6,14 @@
 //! show their color alone.
 
 use super::Job;
-use super::shading_row::{ShadingRow, SurfaceRow};
+use super::shading_row::{ShadingRow, SurfaceLanes};
 use super::shadow_queue::{self, enqueue_shadow_rays};
 use super::stages;
 use super::workspace::Workspace;
 use crate::sampling::cosine_hemispheres;
 use crate::scene::Rgb;
 use crate::shade::MaterialKind;
-use crate::world::{LightRow, ROW};
+use crate::world::{LANES, LightLanes};
 
 /// Traces one ambient occlusion ray per path; `distance` is in world units.
 pub fn integrate(job: &Job, work: &mut Workspace, distance: f64) {
@@ -34,7 +34,7 @@ pub fn integrate(job: &Job, work: &mut Workspace, distance: f64) {
     for kind in MaterialKind::ALL {
         let Some(queue) = work.queues.take(kind) else { continue };
         for rows in queue.rows() {
-            let surface_row = SurfaceRow::load(&queue, rows.first);
+            let surface_row = SurfaceLanes::load(&queue, rows.first);
             let shading = ShadingRow::new(&queue, rows, &surface_row);
             let light = surface_row.state.throughput.times(surface_row.albedo(job.world));
             if distance == 0.0 {
@@ -44,9 +44,9 @@ pub fn integrate(job: &Job, work: &mut Workspace, distance: f64) {
             let numbers = work.paths.sampler_row(&shading.surface_row.state);
             let draw = job.sampler.scatter_row(&numbers, 0, false);
             let direction = shading.to_world(cosine_hemispheres(draw.direction));
-            let sky = LightRow {
-                t: [distance; ROW],
-                ..LightRow::distant(direction, Rgb::ONE, shading.lanes)
+            let sky = LightLanes {
+                t: [distance; LANES],
+                ..LightLanes::distant(direction, Rgb::ONE, shading.lanes)
             };
             enqueue_shadow_rays(job, work, &surface_row, &sky, shading.lanes, light);
         }

@@ -3,7 +3,7 @@
 use super::columns::{LaneRows, WordColumns, float_bits, row};
 use super::material_table::MaterialTable;
 use super::path_state::{PathStateRow, PathStates};
-use super::surface::Surface;
+use super::surface::SurfaceColumns;
 use super::workspace::ROWS;
 use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask, Packing, U32x16, bits, first_lanes, set_bits};
 use crate::ray::{GROUND, Hits, MISS, Rays};
@@ -43,7 +43,7 @@ pub struct HitColumns<'a> {
     /// Hits of the rays.
     pub hits: &'a Hits,
     /// Points and normals of the hits.
-    pub surface: &'a Surface,
+    pub surface: &'a SurfaceColumns,
     /// States of the paths.
     pub states: &'a PathStates,
 }

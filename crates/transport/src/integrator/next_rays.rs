@@ -2,7 +2,7 @@
 
 use super::path_state::{PathStateRow, PathStates};
 use super::surface::Normals;
-use super::workspace::{BATCH, ROWS};
+use super::workspace::{BATCH_PATHS, ROWS};
 use crate::lanes::{F32x16, MAX_LANES, Packing};
 use crate::ray::{Hits, MISS, Rays};
 use crate::vec3::Vec3;
@@ -32,8 +32,8 @@ impl NextRays {
     /// Creates empty columns, with normals of the last surfaces if `normals`.
     pub(super) fn new(normals: bool) -> Self {
         Self {
-            rays: Rays::with_capacity(BATCH),
-            hits: Hits::with_capacity(BATCH),
+            rays: Rays::with_capacity(BATCH_PATHS),
+            hits: Hits::with_capacity(BATCH_PATHS),
             entry: Normals::with_rows(ROWS),
             states: PathStates::new(normals),
         }

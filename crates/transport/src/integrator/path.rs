@@ -21,7 +21,7 @@ use super::mirrored_light::{MirrorRow, sample_mirrored_light};
 use super::near_misses;
 use super::path_state::PathStateRow;
 use super::roulette::{roulette_active, roulette_threshold, survival_probability};
-use super::shading_row::{ShadingRow, SurfaceRow};
+use super::shading_row::{ShadingRow, SurfaceLanes};
 use super::stages::{self, KindVisitor};
 use super::workspace::Workspace;
 use crate::lanes::{F32x16, Lanes, Mask};
@@ -88,7 +88,7 @@ fn shade<M: Material>(
     rows: LaneRows,
     materials: &MaterialsOfKind<impl Fn(MaterialId) -> M>,
 ) {
-    let surface_row = SurfaceRow::load(queue, rows.first);
+    let surface_row = SurfaceLanes::load(queue, rows.first);
     let shading = ShadingRow::new(queue, rows, &surface_row);
     let lookup = work.material_table.as_ref();
     let bsdf = gather_bsdfs(job.world, lookup, materials, &shading.surface_row.at.own);

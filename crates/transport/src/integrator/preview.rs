@@ -9,7 +9,7 @@ use super::Job;
 use super::glass;
 use super::material_table::{MaterialsOfKind, gather_bsdfs};
 use super::path_state::PathStateRow;
-use super::shading_row::{ShadingRow, SurfaceRow};
+use super::shading_row::{ShadingRow, SurfaceLanes};
 use super::shadow_queue::enqueue_shadow_rays;
 use super::stages::{self, KindVisitor};
 use super::whitted;
@@ -77,7 +77,7 @@ impl KindVisitor for Shade<'_> {
         let Some(queue) = self.work.queues.take(kind) else { return };
         let materials = MaterialsOfKind { kind, table };
         for rows in queue.rows() {
-            let surface_row = SurfaceRow::load(&queue, rows.first);
+            let surface_row = SurfaceLanes::load(&queue, rows.first);
             let shading = ShadingRow::new(&queue, rows, &surface_row);
             self.shade(&shading, &materials);
         }
@@ -113,7 +113,7 @@ impl Shade<'_> {
         bsdf: &M::Bsdf<F32x16>,
         lanes: u32,
     ) {
-        let SurfaceRow { at, state, .. } = shading.surface_row;
+        let SurfaceLanes { at, state, .. } = shading.surface_row;
         let above = bsdf.eval(shading.outgoing, Vec3::splat(0.0, 0.0, 1.0));
         let edge = if self.lighting.flat { 1.0 } else { EDGE };
         let facing = F32x16::splat(edge) + F32x16::splat(1.0 - edge) * shading.outgoing.z;

@@ -7,10 +7,10 @@ use super::workspace::Workspace;
 use crate::lanes::{F32x16, Lanes, U32x16};
 use crate::sampling::{Bases, Basis};
 use crate::vec3::Vec3;
-use crate::world::{ROW, ReceiverRow, World};
+use crate::world::{LANES, ReceiverRow, World};
 
 /// A row of surface points from which shadow rays or next rays start.
-pub struct SurfaceRow {
+pub struct SurfaceLanes {
     /// Rows of the rays that hit the points; arbitrary in lanes without a path.
     pub rows: U32x16,
     /// Points, normals on the sides that the rays come from, and spheres.
@@ -24,7 +24,7 @@ pub struct SurfaceRow {
 /// A row of surface points with their local bases.
 pub struct ShadingRow<'a> {
     /// The surface points.
-    pub surface_row: &'a SurfaceRow,
+    pub surface_row: &'a SurfaceLanes,
     /// Lanes that have a path.
     pub lanes: u32,
     /// Transforms to world space and back; z is the normal on the side that the ray comes from.
@@ -33,7 +33,7 @@ pub struct ShadingRow<'a> {
     pub outgoing: Vec3<F32x16>,
 }
 
-impl SurfaceRow {
+impl SurfaceLanes {
     /// Broadcasts the hit of the path in `row` to all lanes.
     pub fn broadcast(work: &Workspace, row: usize, local: &LocalSurface) -> Self {
         let splat = |v: glam::Vec3| Vec3::from(v).map(F32x16::splat);
@@ -42,7 +42,7 @@ impl SurfaceRow {
             at: ReceiverRow {
                 point: splat(work.surface.point.row(row)),
                 normal: splat(local.basis.normal),
-                own: [work.hits.sphere[row]; ROW],
+                own: [work.hits.sphere[row]; LANES],
             },
             inside: if local.inside { u32::from(u16::MAX) } else { 0 },
             state: work.states.broadcast(row),
@@ -65,7 +65,7 @@ impl SurfaceRow {
     }
 }
 
-impl SurfaceRow {
+impl SurfaceLanes {
     /// Returns the characteristic colors at the points: [`World::albedo`].
     #[inline(always)]
     pub fn albedo(&self, world: &World) -> Vec3<F32x16> {
@@ -78,7 +78,7 @@ impl SurfaceRow {
 impl<'a> ShadingRow<'a> {
     /// Creates a row from sixteen hits of a queue and their surface points.
     #[inline(always)]
-    pub fn new(queue: &MaterialQueue, rows: LaneRows, surface_row: &'a SurfaceRow) -> Self {
+    pub fn new(queue: &MaterialQueue, rows: LaneRows, surface_row: &'a SurfaceLanes) -> Self {
         let bases = Bases::about(surface_row.at.normal);
         let mut outgoing = bases.to_local(-queue.direction_row(rows.first));
         // At grazing angles, rounding may move the direction below the horizon.

@@ -3,7 +3,7 @@
 use super::Job;
 use super::clock::Stage;
 use super::columns::row;
-use super::shading_row::SurfaceRow;
+use super::shading_row::SurfaceLanes;
 use super::workspace::Workspace;
 use crate::lanes::{
     F32x16, Lanes, MAX_LANES, Mask, Packing, U32x16, bits, bits_of, first_lanes, set_bits,
@@ -11,7 +11,7 @@ use crate::lanes::{
 use crate::ray::{Columns3, ExactRay, GROUND, Hits, MISS, Rays};
 use crate::trace;
 use crate::vec3::Vec3;
-use crate::world::{LightRow, LightSample, ROW, ReceiverRow, World};
+use crate::world::{LANES, LightLanes, LightSample, ReceiverRow, World};
 use glam::Vec3 as Point;
 
 /// Capacity of a queue.
@@ -37,9 +37,9 @@ impl ShadowQueue {
         Self {
             rays: Rays::with_capacity(SHADOW_QUEUE_SIZE),
             hits: Hits::with_capacity(SHADOW_QUEUE_SIZE),
-            path: vec![0; SHADOW_QUEUE_SIZE + ROW],
-            light: Columns3::with_rows(SHADOW_QUEUE_SIZE + ROW),
-            transmittance: vec![1.0; if translucent { SHADOW_QUEUE_SIZE + ROW } else { 0 }],
+            path: vec![0; SHADOW_QUEUE_SIZE + LANES],
+            light: Columns3::with_rows(SHADOW_QUEUE_SIZE + LANES),
+            transmittance: vec![1.0; if translucent { SHADOW_QUEUE_SIZE + LANES } else { 0 }],
         }
     }
 
@@ -55,7 +55,7 @@ impl ShadowQueue {
     fn push_row(
         &mut self,
         from: &ReceiverRow,
-        samples: &LightRow,
+        samples: &LightLanes,
         lanes: u32,
         path: U32x16,
         light: Vec3<F32x16>,
@@ -65,7 +65,7 @@ impl ShadowQueue {
         packing.store_numbers(U32x16::new(samples.target), &mut self.rays.target[first..]);
         packing.store_numbers(path, &mut self.path[first..]);
         packing.store_doubles(&samples.t, &mut self.hits.t[first..]);
-        self.hits.sphere[first..first + ROW].fill(MISS);
+        self.hits.sphere[first..first + LANES].fill(MISS);
         self.light.pack(first, &packing, light);
     }
 
@@ -101,8 +101,8 @@ pub(super) struct ShadowRay {
 pub fn enqueue_shadow_rays(
     job: &Job,
     work: &mut Workspace,
-    surface_row: &SurfaceRow,
-    samples: &LightRow,
+    surface_row: &SurfaceLanes,
+    samples: &LightLanes,
     lanes: u32,
     light: Vec3<F32x16>,
 ) {
@@ -112,7 +112,7 @@ pub fn enqueue_shadow_rays(
         self_occludes(job.world, work, row, &samples.sample(lane))
     });
     let lanes = hidden.fold(lanes & lit, |lanes, lane| lanes & !(1 << lane));
-    if !work.shadow_queue.has_room(ROW) {
+    if !work.shadow_queue.has_room(LANES) {
         trace_shadow_rays(job, work);
     }
     work.shadow_queue.push_row(&surface_row.at, samples, lanes, surface_row.state.path, light);
@@ -181,11 +181,11 @@ mod tests {
 
     #[test]
     fn pushing_a_row_pushes_its_lanes() {
-        let lanes: [f32; ROW] = std::array::from_fn(|lane| lane as f32);
+        let lanes: [f32; LANES] = std::array::from_fn(|lane| lane as f32);
         let [x, y, z] = [1.0, 2.0, 3.0].map(|factor| F32x16::new(lanes) * F32x16::splat(factor));
         let direction = Vec3::new(x, y, z);
-        let numbers: [u32; ROW] = std::array::from_fn(|lane| 7 + lane as u32);
-        let mut samples = LightRow::distant(direction, Rgb::ONE, u32::from(u16::MAX));
+        let numbers: [u32; LANES] = std::array::from_fn(|lane| 7 + lane as u32);
+        let mut samples = LightLanes::distant(direction, Rgb::ONE, u32::from(u16::MAX));
         (samples.t, samples.target) = (lanes.map(f64::from), numbers);
         let point = direction.map(|x| x + F32x16::splat(0.1));
         let from = ReceiverRow { point, normal: direction, own: numbers.map(|x| 2 * x) };

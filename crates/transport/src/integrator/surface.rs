@@ -1,6 +1,6 @@
 //! Surface interactions: points and normals of hits, and chords through spheres.
 
-use super::workspace::{BATCH, Workspace};
+use super::workspace::{BATCH_PATHS, Workspace};
 use crate::lanes::{Doubles, F64x8, MAX_LANES, Mask, U32x16, load_doubles, look_up, widen};
 use crate::ray::{Columns3, GROUND, MISS};
 use crate::spheres::{LEAF, Spheres};
@@ -9,13 +9,13 @@ use crate::world::{Ground, World};
 use glam::DVec3;
 
 /// Rows that are computed at once.
-pub(super) const ROW: usize = 8;
+pub(super) const LANES: usize = 8;
 
 /// A mask of all lanes of a row.
-const ALL: u32 = (1 << ROW) - 1;
+const ALL: u32 = (1 << LANES) - 1;
 
 /// Points and normals of hits, in columns.
-pub struct Surface {
+pub struct SurfaceColumns {
     /// Points, rounded to single precision.
     pub point: Columns3,
     /// Outward unit normals.
@@ -33,13 +33,13 @@ pub struct Normals {
     z: Vec<f64>,
 }
 
-impl Surface {
+impl SurfaceColumns {
     pub(super) fn with_rows(rows: usize) -> Self {
         Self {
             point: Columns3::with_rows(rows),
             normal: Normals::with_rows(rows),
             facing: Columns3::with_rows(rows),
-            inside: vec![0; rows.next_multiple_of(MAX_LANES) / ROW],
+            inside: vec![0; rows.next_multiple_of(MAX_LANES) / LANES],
         }
     }
 
@@ -47,14 +47,14 @@ impl Surface {
     /// of 16.
     #[inline(always)]
     pub(super) fn inside(&self, first: usize) -> u32 {
-        let halves = &self.inside[first / ROW..][..MAX_LANES / ROW];
-        u32::from(halves[0]) | u32::from(halves[1]) << ROW
+        let halves = &self.inside[first / LANES..][..MAX_LANES / LANES];
+        u32::from(halves[0]) | u32::from(halves[1]) << LANES
     }
 
     /// Flips the side from which a row is hit.
     #[cfg(test)]
     pub(super) fn flip_inside(&mut self, row: usize) {
-        self.inside[row / ROW] ^= 1 << (row % ROW);
+        self.inside[row / LANES] ^= 1 << (row % LANES);
     }
 
     /// Sets the normals of rows `first..first + 8` on the sides that their rays, of these directions,
@@ -63,7 +63,7 @@ impl Surface {
     fn set_facing(&mut self, first: usize, normal: Vec3<F64x8>, direction: Vec3<F64x8>) {
         let inside = F64x8::splat(0.0).lt(normal.dot_unfused(direction));
         self.facing.set_row(first, Vec3::select(inside, -normal, normal));
-        self.inside[first / ROW] = inside.bits() as u8;
+        self.inside[first / LANES] = inside.bits() as u8;
     }
 }
 
@@ -108,20 +108,20 @@ impl Normals {
     /// Writes rows `i..i + 8`.
     #[inline(always)]
     pub(super) fn set_row(&mut self, i: usize, normal: Vec3<F64x8>) {
-        self.x[i..i + ROW].copy_from_slice(&normal.x.to_array());
-        self.y[i..i + ROW].copy_from_slice(&normal.y.to_array());
-        self.z[i..i + ROW].copy_from_slice(&normal.z.to_array());
+        self.x[i..i + LANES].copy_from_slice(&normal.x.to_array());
+        self.y[i..i + LANES].copy_from_slice(&normal.y.to_array());
+        self.z[i..i + LANES].copy_from_slice(&normal.z.to_array());
     }
 }
 
 /// Gathers rows of a column.
 #[inline(always)]
 fn pick(column: &[f64], rows: &[u32; MAX_LANES]) -> [f64; MAX_LANES] {
-    let column: &[f64; BATCH] = column.first_chunk().expect("columns hold a batch");
+    let column: &[f64; BATCH_PATHS] = column.first_chunk().expect("columns hold a batch");
     let mut lanes = [0.0; MAX_LANES];
     for (lane, &row) in lanes.iter_mut().zip(rows) {
-        // Rows are always less than `BATCH`; the remainder makes the bounds check unnecessary.
-        *lane = column[row as usize % BATCH];
+        // Rows are always less than `BATCH_PATHS`; the remainder makes the bounds check unnecessary.
+        *lane = column[row as usize % BATCH_PATHS];
     }
     lanes
 }
@@ -141,7 +141,7 @@ fn load(columns: &Columns3, i: usize) -> Vec3<F64x8> {
 /// Converts 32-bit integers, which double precision holds exactly.
 #[inline(always)]
 fn numbers(column: &[u32]) -> F64x8 {
-    let row: &[u32; ROW] = column.first_chunk().expect("columns hold whole rows");
+    let row: &[u32; LANES] = column.first_chunk().expect("columns hold whole rows");
     F64x8::new(row.map(f64::from))
 }
 
@@ -166,7 +166,7 @@ pub(super) fn compute_surfaces(world: &World, work: &mut Workspace) {
         (0..work.len()).for_each(|row| compute_cut_sphere(world, work, row));
     }
     if !world.cut.is_empty() || world.has_other_bodies() {
-        for first in (0..work.len()).step_by(ROW) {
+        for first in (0..work.len()).step_by(LANES) {
             let normal = work.surface.normal.load(first);
             work.surface.set_facing(first, normal, load(&work.rays.direction, first));
         }
@@ -178,12 +178,12 @@ pub(super) fn compute_surfaces(world: &World, work: &mut Workspace) {
 fn compute_rows(
     world: &World,
     work: &mut Workspace,
-    gather: impl Fn(&[u32; ROW]) -> (Vec3<F64x8>, F64x8),
+    gather: impl Fn(&[u32; LANES]) -> (Vec3<F64x8>, F64x8),
 ) {
-    for first in (0..work.len()).step_by(ROW) {
+    for first in (0..work.len()).step_by(LANES) {
         let hits = work.hits.sphere[first..].first_chunk().expect("columns hold whole rows");
         // Rays of a row often all miss: samples of a pixel are neighbors.
-        if *hits != [MISS; ROW] {
+        if *hits != [MISS; LANES] {
             let (center, radius) = gather(hits);
             compute_row(world, work, first, center, radius);
         }
@@ -308,9 +308,9 @@ pub(super) fn exit_distance(offset: DVec3, radius: f64, direction: DVec3) -> f64
 
 /// Gathers centers and radii of the spheres of a row of hits; lanes without a sphere get those of any.
 #[inline(always)]
-fn gather_spheres(spheres: &Spheres, hits: &[u32; ROW]) -> (Vec3<F64x8>, F64x8) {
+fn gather_spheres(spheres: &Spheres, hits: &[u32; LANES]) -> (Vec3<F64x8>, F64x8) {
     let blocks = spheres.blocks();
-    let mut columns = [[0.0; ROW]; 4];
+    let mut columns = [[0.0; LANES]; 4];
     for (lane, &hit) in hits.iter().enumerate() {
         let (block, slot) = (hit as usize / LEAF, hit as usize % LEAF);
         let block = &blocks[block.min(blocks.len() - 1)];
@@ -345,9 +345,9 @@ impl SmallSphereTable {
 
     /// Returns what [`gather_spheres`] does, by table lookup.
     #[inline(always)]
-    fn gather(&self, hits: &[u32; ROW]) -> (Vec3<F64x8>, F64x8) {
-        let mut places = [0; 2 * ROW];
-        places[..ROW].copy_from_slice(hits);
+    fn gather(&self, hits: &[u32; LANES]) -> (Vec3<F64x8>, F64x8) {
+        let mut places = [0; 2 * LANES];
+        places[..LANES].copy_from_slice(hits);
         let places = U32x16::new(places);
         let pick = |column: U32x16| widen(bytemuck::cast(look_up(column, places)))[0];
         let [x, y, z, radius] = &self.0;

@@ -12,7 +12,7 @@ use super::material_queues::MaterialQueue;
 use super::near_misses;
 use super::path_state::PathStateRow;
 use super::roulette::{roulette_threshold, survival_probability};
-use super::shading_row::{LocalSurface, SurfaceRow};
+use super::shading_row::{LocalSurface, SurfaceLanes};
 use super::shadow_queue;
 use super::stages::{self, KindVisitor};
 use super::workspace::Workspace;
@@ -22,7 +22,7 @@ use crate::sampling::{Bases, cosine_hemispheres};
 use crate::scene::Rgb;
 use crate::shade::{BroadcastParams, Bsdf, Material, MaterialId, MaterialKind, mirror};
 use crate::vec3::Vec3 as Row3;
-use crate::world::{LightRow, ROW, World};
+use crate::world::{LANES, LightLanes, World};
 use std::f32::consts::PI;
 
 /// Follows all paths to their ends, with `samples` shadow samples per light and hit.
@@ -121,12 +121,12 @@ struct BroadcastSurface<M: Material> {
     bsdf: M::Bsdf<F32x16>,
     bases: Bases<F32x16>,
     outgoing: Row3<F32x16>,
-    surface_row: SurfaceRow,
+    surface_row: SurfaceLanes,
 }
 
 impl<M: Material> BroadcastSurface<M> {
     fn new(work: &Workspace, row: usize, params: &M::Params, local: &LocalSurface) -> Self {
-        let surface_row = SurfaceRow::broadcast(work, row, local);
+        let surface_row = SurfaceLanes::broadcast(work, row, local);
         Self {
             row,
             bsdf: M::row(&BroadcastParams(*params)),
@@ -186,8 +186,8 @@ impl Shade<'_> {
         for (first, count) in rows(self.samples) {
             let incoming = cosine_hemispheres(points.row(first, count));
             let direction = base.bases.to_world(incoming).normalize();
-            let mut samples = LightRow::distant(direction, Rgb::ZERO, first_lanes(count));
-            let mut weight = [[0.0; ROW]; 3];
+            let mut samples = LightLanes::distant(direction, Rgb::ZERO, first_lanes(count));
+            let mut weight = [[0.0; LANES]; 3];
             for (lane, cosine) in incoming.z.to_array().into_iter().enumerate().take(count) {
                 let radiance = self.job.world.environment.radiance(samples.sample(lane).direction);
                 let light = radiance * (PI / cosine.max(f32::MIN_POSITIVE));
@@ -206,7 +206,7 @@ impl Shade<'_> {
         work: &mut Workspace,
         base: &BroadcastSurface<M>,
         share: Rgb,
-        samples: &LightRow,
+        samples: &LightLanes,
     ) {
         let incoming = base.bases.to_local(samples.direction);
         let response = base.bsdf.eval(base.outgoing, incoming);
@@ -230,7 +230,7 @@ impl Shade<'_> {
         work: &mut Workspace,
         params: &M::Params,
         local: &LocalSurface,
-        surface_row: &SurfaceRow,
+        surface_row: &SurfaceLanes,
     ) {
         let bsdf: M::Bsdf<f32> = M::row(&BroadcastParams(*params));
         let outgoing = local.outgoing.into();
@@ -258,5 +258,5 @@ impl Shade<'_> {
 
 /// Splits `count` samples into rows: the first of each row, and its length.
 fn rows(count: u32) -> impl Iterator<Item = (u32, usize)> {
-    (0..count).step_by(ROW).map(move |first| (first, ROW.min((count - first) as usize)))
+    (0..count).step_by(LANES).map(move |first| (first, LANES.min((count - first) as usize)))
 }

@@ -13,9 +13,9 @@ use super::near_misses::NearMisses;
 use super::next_rays::{NextRays, RayRow};
 use super::path_state::{PathStateRow, PathStates};
 use super::probe_batch::ProbeBatch;
-use super::shading_row::SurfaceRow;
+use super::shading_row::SurfaceLanes;
 use super::shadow_queue::ShadowQueue;
-use super::surface::{Surface, chord_length, exit_distance};
+use super::surface::{SurfaceColumns, chord_length, exit_distance};
 use crate::film::{Region, View};
 use crate::lanes::{F32x16, MAX_LANES, Packing, U32x16, set_bits};
 use crate::ray::{ExactRay, GROUND, Hits, MISS, Rays};
@@ -30,18 +30,18 @@ use std::ops::Range;
 
 /// Paths of a batch: 16 samples of each pixel of a tile. With fewer, more rows of lanes are half empty
 /// when most paths have ended: with 1024, scenes of a few spheres take 5 % longer, with 512 12 %.
-pub const BATCH: usize = 4096;
+pub const BATCH_PATHS: usize = 4096;
 
 /// Rows of a column: room for a partial row of lanes, and such that columns do not all start in the
 /// same sets of the first-level cache.
-pub(super) const ROWS: usize = BATCH + MAX_LANES;
+pub(super) const ROWS: usize = BATCH_PATHS + MAX_LANES;
 
 /// Capacity of a path's interior list.
 const MAX_NESTING: usize = 16;
 
 /// Everything that a task writes while it renders a tile.
 ///
-/// Paths have an index, `0..BATCH`, from the camera to their end. Those that are alive have a row in
+/// Paths have an index, `0..BATCH_PATHS`, from the camera to their end. Those that are alive have a row in
 /// `rays`, `hits`, `surface` and `states`. Each bounce writes new rows, in the order of shading,
 /// without gaps (compaction), so that neighbors hit the same kind of material.
 pub struct Workspace {
@@ -50,7 +50,7 @@ pub struct Workspace {
     /// By row: the hit of the ray.
     pub hits: Hits,
     /// By row: the surface point of the hit.
-    pub surface: Surface,
+    pub surface: SurfaceColumns,
     /// By row: the path state.
     pub states: PathStates,
     /// By path: radiance and sampler states.
@@ -101,20 +101,20 @@ pub struct Paths {
 }
 
 impl Workspace {
-    /// Allocates room for [`BATCH`] paths through `world`.
+    /// Allocates room for [`BATCH_PATHS`] paths through `world`.
     pub fn new(world: &World, elisions: Elisions) -> Self {
         let normals = world.lights.by_receiver();
         let translucent = if world.features.translucent { ROWS } else { 0 };
         let nesting = if elisions.glass && !world.features.nested_glass { 0 } else { MAX_NESTING };
         Self {
-            rays: Rays::with_capacity(BATCH),
-            hits: Hits::with_capacity(BATCH),
-            surface: Surface::with_rows(ROWS),
+            rays: Rays::with_capacity(BATCH_PATHS),
+            hits: Hits::with_capacity(BATCH_PATHS),
+            surface: SurfaceColumns::with_rows(ROWS),
             states: PathStates::new(normals),
             paths: Paths {
-                radiance: vec![Rgb::ZERO; BATCH],
-                sampler_states: SamplerStates::with_paths(BATCH),
-                interiors: vec![MISS; BATCH * nesting],
+                radiance: vec![Rgb::ZERO; BATCH_PATHS],
+                sampler_states: SamplerStates::with_paths(BATCH_PATHS),
+                interiors: vec![MISS; BATCH_PATHS * nesting],
                 nesting,
             },
             thresholds: vec![0.0; translucent],
@@ -265,7 +265,7 @@ impl Workspace {
     pub(super) fn spawn_rays(
         &mut self,
         world: &World,
-        surface_row: &SurfaceRow,
+        surface_row: &SurfaceLanes,
         lanes: u32,
         direction: row::Vec3<F32x16>,
         state: &PathStateRow,

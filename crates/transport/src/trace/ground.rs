@@ -9,12 +9,12 @@ use crate::vec3::Vec3;
 use crate::world::Ground;
 
 /// Rays that are tested at once.
-const ROW: usize = 8;
+const LANES: usize = 8;
 
 /// Intersects rays with the ground, and updates the hits that are farther.
 pub(crate) fn intersect_ground(ground: &Ground, rays: &Rays, hits: &mut Hits) {
     let plane = plane(ground);
-    for first in (0..rays.len()).step_by(ROW) {
+    for first in (0..rays.len()).step_by(LANES) {
         let (crossed, t) = crossed(&plane, rays, first);
         let nearer = crossed & t.lt(bounds(hits, first));
         let active = lanes_of(rays, first) & nearer.bits();
@@ -31,7 +31,7 @@ pub(crate) fn intersect_ground(ground: &Ground, rays: &Rays, hits: &mut Hits) {
 /// Tests whether the ground occludes rays that have no hit yet.
 pub(crate) fn occlude_by_ground(ground: &Ground, rays: &Rays, hits: &mut Hits) {
     let plane = plane(ground);
-    for first in (0..rays.len()).step_by(ROW) {
+    for first in (0..rays.len()).step_by(LANES) {
         let (crossed, t) = crossed(&plane, rays, first);
         let free = bits_of::<F32x8>(&hits.sphere[first..]).has_bits_of(bits(MISS)).bits();
         let hidden = crossed & t.lt(bounds(hits, first));
@@ -51,7 +51,7 @@ fn bounds(hits: &Hits, first: usize) -> F64x8 {
 /// Returns the lanes with a ray that does not start on the ground.
 #[inline(always)]
 fn lanes_of(rays: &Rays, first: usize) -> u32 {
-    let active = u32::MAX >> (u32::BITS as usize - ROW.min(rays.len() - first));
+    let active = u32::MAX >> (u32::BITS as usize - LANES.min(rays.len() - first));
     active & !bits_of::<F32x8>(&rays.own[first..]).has_bits_of(bits(GROUND)).bits()
 }
 

@@ -49,7 +49,7 @@ pub use ground::Ground;
 pub(crate) use light_images::{LightImage, LightImages, SeenLight};
 pub(crate) use lights::MAX_MIDDLES;
 pub use lights::{
-    Disc, LightRow, LightSample, LightView, Lights, Point, ROW, Receiver, ReceiverRow, Sun,
+    Disc, LANES, LightLanes, LightSample, LightView, Lights, Point, Receiver, ReceiverRow, Sun,
 };
 pub use parts::{OmittedSpheres, Parts};
 pub use transform::Transform;

@@ -3,7 +3,7 @@
 use crate::bench::BenchError;
 use crate::bench::rounds::{Times, clock};
 use crate::bench::threads::pool;
-use crate::paper::{Threading, Tracer};
+use crate::paper::{PaperTracer, Threading};
 use crate::report::{Cell, Column, Style};
 use spherule_render::image::{Comparison, Image, compare};
 use spherule_render::render::{self, render};
@@ -33,8 +33,8 @@ pub(crate) enum Program {
 pub(crate) struct SceneSetup {
     pub(crate) settings: Settings,
     world: World,
-    brute: Tracer,
-    paper: Tracer,
+    brute: PaperTracer,
+    paper: PaperTracer,
 }
 
 /// A program with its scene, settings and number of threads.
@@ -62,7 +62,7 @@ impl SceneSetup {
     pub(crate) fn new(scene: &Scene) -> Result<Self, BenchError> {
         let named = |error| BenchError::World(scene.title.clone(), error);
         let world = World::build(scene).map_err(named)?;
-        let [brute, paper] = [false, true].map(|tree| Tracer::new(scene, &world, tree));
+        let [brute, paper] = [false, true].map(|tree| PaperTracer::new(scene, &world, tree));
         Ok(Self { settings: scene.settings.clone(), world, brute: brute?, paper: paper? })
     }
 
@@ -72,7 +72,7 @@ impl SceneSetup {
         program: Program,
         settings: &Settings,
     ) -> Result<(Image, u64), BenchError> {
-        let by_paper = |tracer: &Tracer, threading| {
+        let by_paper = |tracer: &PaperTracer, threading| {
             let render = tracer.render(settings, threading)?;
             Ok((render.image, render.rays))
         };

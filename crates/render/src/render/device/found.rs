@@ -4,7 +4,7 @@ use super::super::pass::trace_paths;
 use super::queue::FoundPixels;
 use crate::film::{PixelSamples, Region, Tile, View};
 use crate::integrator::Job;
-use crate::integrator::workspace::{BATCH, Workspace};
+use crate::integrator::workspace::{BATCH_PATHS, Workspace};
 use crate::scene::Rgb;
 use crate::world::DevicePath;
 use std::ops::Range;
@@ -76,7 +76,7 @@ fn complete(
     let index = |path: usize| path % pass.len();
     unknown.sort_unstable_by_key(|&path| (index(path), path));
     let same = |a: &usize, b: &usize| index(*a) == index(*b);
-    for batch in unknown.chunk_by(same).flat_map(|paths| paths.chunks(BATCH)) {
+    for batch in unknown.chunk_by(same).flat_map(|paths| paths.chunks(BATCH_PATHS)) {
         let sample = pass.start + index(batch[0]) as u32;
         let pixel = |&path: &usize| {
             let (x, y) = pixels[path / pass.len()];

@@ -15,7 +15,7 @@ use crate::film::{Tile, View};
 use crate::integrator::Job;
 use crate::integrator::clock::Stage;
 use crate::integrator::light_images::SeenLights;
-use crate::integrator::workspace::{BATCH, Workspace};
+use crate::integrator::workspace::{BATCH_PATHS, Workspace};
 use crate::world::DevicePaths;
 use queue::{FoundPixels, Taken, TileQueue, Work};
 use std::ops::Range;
@@ -101,7 +101,7 @@ fn help(
     watch: &Watch,
 ) {
     let mut work = Workspace::new(job.world, job.elisions);
-    while let Some(next) = queue.next_work(BATCH, || watch.cancelled()) {
+    while let Some(next) = queue.next_work(BATCH_PATHS, || watch.cancelled()) {
         let taken = match next {
             Work::Add(mut taken, pixels) => {
                 work.clock.restart();

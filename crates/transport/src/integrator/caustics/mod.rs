@@ -17,7 +17,7 @@ use super::direct_light::power_heuristic;
 use super::material_table::{MaterialsOfKind, gather_bsdfs};
 use super::shading_row::ShadingRow;
 use super::shadow_queue::{self, ShadowRay};
-use super::workspace::{BATCH, Workspace};
+use super::workspace::{BATCH_PATHS, Workspace};
 use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask, set_bits};
 use crate::ray::MISS;
 use crate::sampling::{Bases, LightDraw, next_in_square};
@@ -45,7 +45,7 @@ impl Caustics {
             return Self::default();
         }
         Self {
-            chains: vec![SpecularChain::NONE; BATCH],
+            chains: vec![SpecularChain::NONE; BATCH_PATHS],
             queries: QueryQueue::new(),
             first_segments: FirstSegments::new(),
         }

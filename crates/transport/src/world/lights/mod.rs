@@ -11,7 +11,7 @@ mod tree;
 
 pub use point::Point;
 pub(crate) use row::MAX_MIDDLES;
-pub use row::{LightRow, ROW, ReceiverRow};
+pub use row::{LANES, LightLanes, ReceiverRow};
 pub(super) use sampler::LightSampler;
 pub use sphere_light::Disc;
 pub use sun::Sun;

@@ -1,6 +1,6 @@
 //! Point lights.
 
-use super::row::{LightRow, ROW, ReceiverRow};
+use super::row::{LANES, LightLanes, ReceiverRow};
 use super::{LightSample, Lights};
 use crate::lanes::{Doubles, F64x8, Mask, set_bits};
 use crate::ray::MISS;
@@ -69,17 +69,17 @@ impl Point {
 
 /// The point lights of a row of lanes.
 struct PointRow {
-    position: [[f64; ROW]; 3],
-    intensity: [[f64; ROW]; 3],
-    scale: [f64; ROW],
+    position: [[f64; LANES]; 3],
+    intensity: [[f64; LANES]; 3],
+    scale: [f64; LANES],
 }
 
 impl PointRow {
     /// Returns eight of the lights, from lane `first` on, as seen from `origin`.
     #[inline(always)]
     fn view(&self, origin: Vec3<F64x8>, first: usize) -> PointView<F64x8> {
-        let part = |column: &[f64; ROW]| F64x8::from(&column[first..first + 8]);
-        let vector = |[x, y, z]: &[[f64; ROW]; 3]| Vec3::new(part(x), part(y), part(z));
+        let part = |column: &[f64; LANES]| F64x8::from(&column[first..first + 8]);
+        let vector = |[x, y, z]: &[[f64; LANES]; 3]| Vec3::new(part(x), part(y), part(z));
         view(origin, vector(&self.position), vector(&self.intensity), part(&self.scale))
     }
 }
@@ -96,8 +96,8 @@ impl Point {
 
 impl Lights {
     #[inline(always)]
-    fn gather_points(&self, light: &[u32; ROW], lanes: u32, first: usize) -> PointRow {
-        let column = [0.0; ROW];
+    fn gather_points(&self, light: &[u32; LANES], lanes: u32, first: usize) -> PointRow {
+        let column = [0.0; LANES];
         let mut row = PointRow { position: [column; 3], intensity: [column; 3], scale: column };
         for lane in set_bits(lanes) {
             let point = &self.points[light[lane] as usize - first];
@@ -116,10 +116,10 @@ impl Lights {
     pub(super) fn sample_points(
         &self,
         at: &ReceiverRow,
-        light: &[u32; ROW],
+        light: &[u32; LANES],
         lanes: u32,
         first: usize,
-    ) -> LightRow {
+    ) -> LightLanes {
         let origin = at.point.halves();
         let (low, high) = if let [lone] = &self.points[..] {
             (lone.view_row(origin[0]), lone.view_row(origin[1]))
@@ -127,14 +127,14 @@ impl Lights {
             let points = self.gather_points(light, lanes, first);
             (points.view(origin[0], 0), points.view(origin[1], 8))
         };
-        let row = LightRow::distant(
+        let row = LightLanes::distant(
             Vec3::narrow([low.direction, high.direction]),
             Rgb::ZERO,
             lanes & (low.apart.bits() | high.apart.bits() << 8),
         );
-        let mut t = [0.0; ROW];
+        let mut t = [0.0; LANES];
         t[..8].copy_from_slice(&low.distance.to_array());
         t[8..].copy_from_slice(&high.distance.to_array());
-        LightRow { t, weight: Vec3::narrow([low.weight, high.weight]), ..row }
+        LightLanes { t, weight: Vec3::narrow([low.weight, high.weight]), ..row }
     }
 }

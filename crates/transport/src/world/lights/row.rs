@@ -13,7 +13,7 @@ use crate::world::{Picture, SkySamples, World};
 use std::ops::Range;
 
 /// Samples in a row.
-pub const ROW: usize = 16;
+pub const LANES: usize = 16;
 
 /// Maximum number of lights that [`Lights::middle_row`] distinguishes.
 pub(crate) const MAX_MIDDLES: usize = 4;
@@ -26,18 +26,18 @@ pub struct ReceiverRow {
     /// Unit normals, on the sides that are lit.
     pub normal: Vec3<F32x16>,
     /// Spheres whose surfaces the points are on.
-    pub own: [u32; ROW],
+    pub own: [u32; LANES],
 }
 
 /// A row of light samples; lane by lane a [`LightSample`].
 #[derive(Clone, Copy, Debug)]
-pub struct LightRow {
+pub struct LightLanes {
     /// Unit vectors toward the lights.
     pub direction: Vec3<F32x16>,
     /// Distances of the lights.
-    pub t: [f64; ROW],
+    pub t: [f64; LANES],
     /// Rows of lights that are spheres, otherwise [`MISS`].
-    pub target: [u32; ROW],
+    pub target: [u32; LANES],
     /// Radiance over density, by channel.
     pub weight: Vec3<F32x16>,
     /// Densities by solid angle; 0 for lights without extent, and where they are not needed.
@@ -57,14 +57,14 @@ impl ReceiverRow {
     }
 }
 
-impl LightRow {
+impl LightLanes {
     /// Returns light from infinity, the same from everywhere.
     #[inline(always)]
     pub fn distant(direction: Vec3<F32x16>, weight: Rgb, lanes: u32) -> Self {
         Self {
             direction,
-            t: [f64::INFINITY; ROW],
-            target: [MISS; ROW],
+            t: [f64::INFINITY; LANES],
+            target: [MISS; LANES],
             weight: every(weight),
             pdf: F32x16::splat(0.0),
             close: 0,
@@ -172,16 +172,16 @@ impl Lights {
         at: &ReceiverRow,
         numbers: [F32x16; 4],
         lanes: u32,
-    ) -> LightRow {
+    ) -> LightLanes {
         let [u, v, ..] = numbers;
         if let Some(sun) = self.single_sun() {
             return sun.sample_row([u, v], lanes);
         }
         let draw = || LightDraw::light_row(numbers);
         let (light, probability) = match &self.sampler {
-            LightSampler::None => return LightRow::dark(),
+            LightSampler::None => return LightLanes::dark(),
             LightSampler::Single => {
-                return self.sample_lights(world, at, &[0; ROW], lanes, [u, v]);
+                return self.sample_lights(world, at, &[0; LANES], lanes, [u, v]);
             }
             LightSampler::Tree(tree) => tree.choose_row(at, draw(), lanes),
             LightSampler::Table(_) => self.choose_each(at, draw()),
@@ -200,10 +200,10 @@ impl Lights {
         at: &ReceiverRow,
         index: usize,
         lanes: u32,
-    ) -> LightRow {
+    ) -> LightLanes {
         let (count, middle) = (self.count_without_sky(), [F32x16::splat(0.0); 2]);
         if count <= MAX_MIDDLES {
-            return self.sample_lights(world, at, &[index as u32; ROW], lanes, middle);
+            return self.sample_lights(world, at, &[index as u32; LANES], lanes, middle);
         }
         let draw = [F64x8::splat((index as f64 + 0.5) / MAX_MIDDLES as f64); 2];
         let (light, probability) = match &self.sampler {
@@ -222,10 +222,10 @@ impl Lights {
         &self,
         world: &World,
         at: &ReceiverRow,
-        light: &[u32; ROW],
+        light: &[u32; LANES],
         lanes: u32,
         u: [F32x16; 2],
-    ) -> LightRow {
+    ) -> LightLanes {
         let lanes_of = |kind: Range<usize>| {
             let chosen = set_bits(lanes).filter(|&lane| kind.contains(&(light[lane] as usize)));
             chosen.fold(0_u32, |lanes, lane| lanes | 1 << lane)
@@ -233,7 +233,7 @@ impl Lights {
         let emitters = self.emitters.len();
         let discs = lanes_of(0..emitters);
         let points = lanes_of(emitters..emitters + self.points.len());
-        let mut row = LightRow::dark();
+        let mut row = LightLanes::dark();
         if discs != 0 {
             row = self.sample_discs(&world.spheres, at, light, discs, u);
         }
@@ -244,7 +244,7 @@ impl Lights {
         for part in 0..self.sky_parts {
             let lanes = lanes_of(sky + part..sky + part + 1);
             if let Some(picture) = world.environment.picture().filter(|_| lanes != 0) {
-                row = row.or(&LightRow::sky(picture, part, u, lanes));
+                row = row.or(&LightLanes::sky(picture, part, u, lanes));
             }
         }
         let others = lanes_of(emitters + self.points.len()..sky);
@@ -265,9 +265,9 @@ impl Lights {
     pub fn sky_probabilities(
         &self,
         at: &ReceiverRow,
-        mut part: [u32; ROW],
+        mut part: [u32; LANES],
         lanes: u32,
-    ) -> [f32; ROW] {
+    ) -> [f32; LANES] {
         let first = (self.len() - self.sky_parts) as u32;
         for part in &mut part {
             *part += first;
@@ -276,16 +276,16 @@ impl Lights {
             return tree.probability_row(at, &part, lanes);
         }
         // The same for all receivers.
-        let mut each = [0.0; ROW];
+        let mut each = [0.0; LANES];
         for lane in set_bits(lanes) {
             each[lane] = self.probability(&at.receiver(lane), part[lane] as usize);
         }
         each
     }
 
-    fn choose_each(&self, at: &ReceiverRow, draw: [F64x8; 2]) -> ([u32; ROW], [f32; ROW]) {
+    fn choose_each(&self, at: &ReceiverRow, draw: [F64x8; 2]) -> ([u32; LANES], [f32; LANES]) {
         let draw = draw.map(F64x8::to_array);
-        let chosen: [(u32, f32); ROW] = std::array::from_fn(|lane| {
+        let chosen: [(u32, f32); LANES] = std::array::from_fn(|lane| {
             let chosen = self.choose(&at.receiver(lane), draw[lane / 8][lane % 8]);
             chosen.map_or((0, 1.0), |(light, probability)| (light as u32, probability))
         });
@@ -296,28 +296,28 @@ impl Lights {
 impl LightView<'_> {
     /// Does what [`LightView::sample`] does for the first `count` lanes of a row of random numbers.
     #[inline(always)]
-    pub fn sample_row(&self, u: [F32x16; 2], count: usize) -> LightRow {
+    pub fn sample_row(&self, u: [F32x16; 2], count: usize) -> LightLanes {
         let lanes = first_lanes(count);
         match self {
             Self::Disc(disc) => disc.sample_row(u, lanes),
             Self::Sun(sun) => sun.sample_row(u, lanes),
-            Self::Sky(picture, part) => LightRow::sky(picture, *part, u, lanes),
-            Self::Delta(sample) => LightRow::dark().with((0..count).map(|lane| (lane, *sample))),
+            Self::Sky(picture, part) => LightLanes::sky(picture, *part, u, lanes),
+            Self::Delta(sample) => LightLanes::dark().with((0..count).map(|lane| (lane, *sample))),
         }
     }
 }
 
 impl Disc {
     #[inline(always)]
-    fn sample_row(&self, u: [F32x16; 2], lanes: u32) -> LightRow {
+    fn sample_row(&self, u: [F32x16; 2], lanes: u32) -> LightLanes {
         let direction = self.basis.row_to_world(self.cone.sample_row(u));
         let splat = |v: glam::DVec3| [Vec3::from(v).map(F64x8::splat); 2];
         let origin = Vec3::from(self.origin).map(F32x16::splat);
         let (center, radius) = (splat(self.center), [F64x8::splat(self.radius); 2]);
-        LightRow {
+        LightLanes {
             direction,
             t: distances(origin, direction, &center, &radius, lanes),
-            target: [self.row; ROW],
+            target: [self.row; LANES],
             weight: every(self.weight),
             pdf: F32x16::splat(self.cone.pdf()),
             close: if self.close { lanes } else { 0 },

@@ -1,7 +1,7 @@
 //! The light sampler: chooses the light to sample.
 
 use super::Lights;
-use super::tree::{AllAround, BRANCHES, FAR, LightBounds, Receiver, Surface, Tree};
+use super::tree::{AllAround, BRANCHES, FAR, LightBounds, OneSided, Receiver, Tree};
 use crate::sampling::Distribution;
 use crate::scene::{LightChoice, Rgb};
 use crate::spheres::Spheres;
@@ -142,7 +142,7 @@ impl Lights {
             LightSampler::None => None,
             LightSampler::Single => Some((0, 1.0)),
             LightSampler::Tree(tree) => {
-                let (light, probability, _) = tree.choose::<Surface>(at, draw);
+                let (light, probability, _) = tree.choose::<OneSided>(at, draw);
                 Some((light, probability))
             }
             LightSampler::Table(table) => {
@@ -158,7 +158,7 @@ impl Lights {
         match &self.sampler {
             LightSampler::None => 0.0,
             LightSampler::Single => 1.0,
-            LightSampler::Tree(tree) => tree.probability::<Surface>(at, index),
+            LightSampler::Tree(tree) => tree.probability::<OneSided>(at, index),
             LightSampler::Table(table) => table.pmf(index),
         }
     }

@@ -1,6 +1,6 @@
 //! Emissive spheres as seen from points: discs that fill cones, one at a time or in rows.
 
-use super::row::{LightRow, ROW, ReceiverRow};
+use super::row::{LANES, LightLanes, ReceiverRow};
 use super::{LightSample, Lights};
 use crate::intersect::{self, Pairs};
 use crate::lanes::{Doubles, F32x16, F64x8, Mask, set_bits, widen};
@@ -120,10 +120,10 @@ pub(super) fn distance(
 
 /// Centers, radii and radiance of a row of spheres.
 struct SphereRow {
-    center: [[f32; ROW]; 3],
-    radius: [f32; ROW],
-    radiance: [[f32; ROW]; 3],
-    target: [u32; ROW],
+    center: [[f32; LANES]; 3],
+    radius: [f32; LANES],
+    radiance: [[f32; LANES]; 3],
+    target: [u32; LANES],
 }
 
 impl Lights {
@@ -134,10 +134,10 @@ impl Lights {
         &self,
         spheres: &Spheres,
         at: &ReceiverRow,
-        light: &[u32; ROW],
+        light: &[u32; LANES],
         lanes: u32,
         u: [F32x16; 2],
-    ) -> LightRow {
+    ) -> LightLanes {
         let row = self.gather(spheres, light, lanes);
         let (origin, center) = (at.point.halves(), row.center().halves());
         let radius = widen(F32x16::new(row.radius));
@@ -149,7 +149,7 @@ impl Lights {
         let own = set_bits(lanes).filter(|&lane| row.target[lane] == at.own[lane]);
         let lanes = own.fold(lanes & outside, |lanes, lane| lanes & !(1 << lane));
         let pdf = cone.pdfs();
-        LightRow {
+        LightLanes {
             direction,
             t: distances(at.point, direction, &center, &radius, lanes),
             target: row.target,
@@ -161,22 +161,22 @@ impl Lights {
     }
 
     #[inline(always)]
-    fn gather(&self, spheres: &Spheres, light: &[u32; ROW], lanes: u32) -> SphereRow {
+    fn gather(&self, spheres: &Spheres, light: &[u32; LANES], lanes: u32) -> SphereRow {
         if let [lone] = self.emitters[..] {
             // Broadcasts: writing lane by lane would stall the load of the row.
             let (center, radiance) = (spheres.center(lone as usize), self.radiance[0]);
             return SphereRow {
-                center: center.to_array().map(|x| [x; ROW]),
-                radius: [spheres.radius(lone as usize); ROW],
-                radiance: radiance.to_array().map(|x| [x; ROW]),
-                target: [lone; ROW],
+                center: center.to_array().map(|x| [x; LANES]),
+                radius: [spheres.radius(lone as usize); LANES],
+                radiance: radiance.to_array().map(|x| [x; LANES]),
+                target: [lone; LANES],
             };
         }
         let mut row = SphereRow {
-            center: [[0.0; ROW]; 3],
-            radius: [1.0; ROW],
-            radiance: [[0.0; ROW]; 3],
-            target: [MISS; ROW],
+            center: [[0.0; LANES]; 3],
+            radius: [1.0; LANES],
+            radiance: [[0.0; LANES]; 3],
+            target: [MISS; LANES],
         };
         for lane in set_bits(lanes) {
             let light = light[lane] as usize;
@@ -205,7 +205,7 @@ impl SphereRow {
 }
 
 #[inline(always)]
-fn columns([x, y, z]: &[[f32; ROW]; 3]) -> Vec3<F32x16> {
+fn columns([x, y, z]: &[[f32; LANES]; 3]) -> Vec3<F32x16> {
     Vec3::new(F32x16::new(*x), F32x16::new(*y), F32x16::new(*z))
 }
 
@@ -217,9 +217,9 @@ pub(super) fn distances(
     center: &[Vec3<F64x8>; 2],
     radius: &[F64x8; 2],
     lanes: u32,
-) -> [f64; ROW] {
+) -> [f64; LANES] {
     let (from, toward) = (origin.halves(), direction.halves());
-    let mut t = [0.0; ROW];
+    let mut t = [0.0; LANES];
     for half in 0..2 {
         let samples = lanes >> (8 * half) & 0xff;
         if samples == 0 {

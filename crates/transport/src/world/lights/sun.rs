@@ -1,6 +1,6 @@
 //! Suns: discs at infinity.
 
-use super::{LightRow, LightSample};
+use super::{LightLanes, LightSample};
 use crate::lanes::F32x16;
 use crate::ray::MISS;
 use crate::sampling::{Basis, Cone};
@@ -82,11 +82,11 @@ impl Sun {
 
     /// Does what [`Sun::sample`] does for `lanes` of a row of random numbers.
     #[inline(always)]
-    pub(super) fn sample_row(&self, u: [F32x16; 2], lanes: u32) -> LightRow {
+    pub(super) fn sample_row(&self, u: [F32x16; 2], lanes: u32) -> LightLanes {
         let (direction, pdf) = match &self.disc {
             None => (Row3::from(self.direction).map(F32x16::splat), 0.0),
             Some(cone) => (self.basis.row_to_world(cone.sample_row(u)), cone.pdf()),
         };
-        LightRow { pdf: F32x16::splat(pdf), ..LightRow::distant(direction, self.weight, lanes) }
+        LightLanes { pdf: F32x16::splat(pdf), ..LightLanes::distant(direction, self.weight, lanes) }
     }
 }

@@ -124,9 +124,9 @@ pub(super) trait Facing {
 }
 
 /// A surface receives light from above its horizon.
-pub(super) struct Surface;
+pub(super) struct OneSided;
 
-impl Facing for Surface {
+impl Facing for OneSided {
     #[inline(always)]
     fn facing<L: Lanes>(cosine: L, sine: L) -> L {
         horizon(cosine, sine)

@@ -6,7 +6,7 @@ use super::{Plan, ratio, time};
 use crate::bench::BenchError;
 use crate::bench::rounds::{Times, clock};
 use crate::bench::threads::pool;
-use crate::paper::{Threading, Tracer};
+use crate::paper::{PaperTracer, Threading};
 use crate::report::{Axis, Column, Plot, Point, Series, Spread, Table};
 use indicatif::HumanCount;
 use spherule_render::bvh::builders::{Builder, build};
@@ -89,7 +89,7 @@ fn row(plan: &Plan, count: u64) -> Result<Row, BenchError> {
 fn builds(plan: &Plan, scene: &Scene) -> Result<Times, BenchError> {
     let named = |error| BenchError::World(scene.title.clone(), error);
     let world = World::build(scene).map_err(named)?;
-    let tracer = Tracer::new(scene, &world, false)?;
+    let tracer = PaperTracer::new(scene, &world, false)?;
     let turn = |contestant| {
         repeat(|| {
             if contestant == 0 {

@@ -8,7 +8,7 @@ use crate::world::caustics::selection::CausticChoice;
 use crate::world::caustics::{
     CausticCasters, CausticHit, CausticPath, CausticQuery, CausticSample, CausticSource,
 };
-use crate::world::{ROW, Receiver, World};
+use crate::world::{LANES, Receiver, World};
 use glam::DVec3;
 use spherule_core::internals::random::Random;
 
@@ -56,11 +56,11 @@ fn sample(
     choice: &CausticChoice,
     place: [f32; 2],
 ) -> CausticSample {
-    let code = [choice.caster as u32 * CausticPath::COUNT; ROW];
+    let code = [choice.caster as u32 * CausticPath::COUNT; LANES];
     let query = CausticQuery {
         point: splat(at.point),
-        pairs: casters.pair_row(&code, &[choice.emitter as u32; ROW], 1),
-        path: [choice.path; ROW],
+        pairs: casters.pair_row(&code, &[choice.emitter as u32; LANES], 1),
+        path: [choice.path; LANES],
         rate: F32x16::splat(choice.rate as f32),
     };
     query.sample(place.map(F32x16::splat))

@@ -8,7 +8,7 @@ use crate::world::Sun;
 use glam::{DVec3, Vec3};
 
 fn check(view: &LightView, count: usize, seed: u64) {
-    let draws: [[f32; 2]; ROW] =
+    let draws: [[f32; 2]; LANES] =
         std::array::from_fn(|lane| unit_pair(stream(mix(seed), lane as u64)));
     let u = [0, 1].map(|axis| F32x16::new(draws.map(|draw| draw[axis])));
     let row = view.sample_row(u, count);
@@ -29,19 +29,19 @@ fn rows_equal_their_lanes() {
         let origin = Vec3::new(0.3, -0.5, 0.7) + Vec3::new(0.48, -0.6, 0.64) * distance;
         let disc = Disc::new(&spheres, 0, Rgb::ONE, origin, 1.0).expect("the point is outside");
         let view = LightView::Disc(disc);
-        (1..=ROW).for_each(|count| check(&view, count, count as u64));
+        (1..=LANES).for_each(|count| check(&view, count, count as u64));
     }
     for angle in [0.0, 0.27, 90.0] {
         let sun = Sun::new(DVec3::new(0.6, 0.0, 0.8), Rgb::ONE, angle);
-        check(&LightView::Sun(&sun), ROW, 1);
+        check(&LightView::Sun(&sun), LANES, 1);
     }
     let world = crate::world::lights::tests::world();
     let picture = world.environment.picture().expect("it is not black");
-    (1..=ROW).for_each(|count| check(&LightView::Sky(picture, 0), count, count as u64));
+    (1..=LANES).for_each(|count| check(&LightView::Sky(picture, 0), count, count as u64));
 }
 
 /// Receivers around the origin, facing many directions.
-fn receivers(seed: u64) -> [Receiver; ROW] {
+fn receivers(seed: u64) -> [Receiver; LANES] {
     std::array::from_fn(|lane| {
         let number = |k| stream(mix(seed), 8 * lane as u64 + k);
         let [[a, b], [c, d]] = [0, 1].map(|k| unit_pair(number(k)));
@@ -60,7 +60,7 @@ fn assert_rows_equal_lanes(world: &World) {
         };
         let (point, normal) = (vector(|at| at.point), vector(|at| at.normal));
         let at = ReceiverRow { point, normal, own: each.map(|at| at.own) };
-        let numbers: [[f32; 4]; ROW] = std::array::from_fn(|lane| {
+        let numbers: [[f32; 4]; LANES] = std::array::from_fn(|lane| {
             let pair = |k| unit_pair(stream(mix(seed + 9), 2 * lane as u64 + k));
             let ([a, b], [c, d]) = (pair(0), pair(1));
             [a, b, c, d]
@@ -70,12 +70,12 @@ fn assert_rows_equal_lanes(world: &World) {
         assert_eq!(row.close & !row.lanes, 0);
         if world.lights.sky_parts > 0 {
             let index = world.lights.len() - world.lights.sky_parts;
-            let found = world.lights.sky_probabilities(&at, [0; ROW], lanes);
+            let found = world.lights.sky_probabilities(&at, [0; LANES], lanes);
             for lane in set_bits(lanes) {
                 assert_eq!(found[lane], world.lights.probability(&each[lane], index));
             }
         }
-        for lane in 0..ROW {
+        for lane in 0..LANES {
             let draw = LightDraw::new(numbers[lane]);
             let Receiver { point, own, .. } = each[lane];
             let chosen = world.lights.choose(&each[lane], draw.light);

@@ -3,8 +3,8 @@
 //! Near the root all receivers evaluate the same nodes: there a lane is a receiver and not a node, so
 //! that sums and searches are in lanes as well. Below, each receiver descends alone.
 
-use super::super::row::{ROW, ReceiverRow};
-use super::{BRANCHES, Nodes, RESOLVED, Siblings, Surface, Tree};
+use super::super::row::{LANES, ReceiverRow};
+use super::{BRANCHES, Nodes, OneSided, RESOLVED, Siblings, Tree};
 use crate::lanes::{Doubles, F32x16, F64x8, Mask, set_bits, widen};
 use crate::vec3::Vec3;
 
@@ -28,9 +28,9 @@ impl Tree {
         at: &ReceiverRow,
         draw: [F64x8; 2],
         lanes: u32,
-    ) -> ([u32; ROW], [f32; ROW]) {
+    ) -> ([u32; LANES], [f32; LANES]) {
         let chances = self.chances_row(at);
-        let (mut light, mut probability) = ([0; ROW], [1.0; ROW]);
+        let (mut light, mut probability) = ([0; LANES], [1.0; LANES]);
         for (half, draw) in draw.into_iter().enumerate() {
             let wanted = lanes >> (8 * half) & 0xff;
             if wanted == 0 {
@@ -46,11 +46,11 @@ impl Tree {
                 let node = place[i] as usize;
                 let below = usize::from(self.children[node]);
                 let (found, pdf, _) = if picked.resolved >> i & 1 == 0 {
-                    self.choose::<Surface>(&at.receiver(lane), draw.to_array()[i])
+                    self.choose::<OneSided>(&at.receiver(lane), draw.to_array()[i])
                 } else if below > 0 {
                     let nodes = Siblings { first: self.child[node] as usize, count: below };
                     let rest = picked.rest.to_array()[i];
-                    self.descend::<Surface>(nodes, &at.receiver(lane), rest, chance[i])
+                    self.descend::<OneSided>(nodes, &at.receiver(lane), rest, chance[i])
                 } else {
                     (self.child[node] as usize, chance[i] as f32, 0.0)
                 };
@@ -65,9 +65,9 @@ impl Tree {
     pub(in super::super) fn probability_row(
         &self,
         at: &ReceiverRow,
-        light: &[u32; ROW],
+        light: &[u32; LANES],
         lanes: u32,
-    ) -> [f32; ROW] {
+    ) -> [f32; LANES] {
         let chances = self.chances_row(at);
         let top = usize::from(self.top);
         let mut total = [F64x8::splat(0.0); 2];
@@ -75,16 +75,16 @@ impl Tree {
             let [low, high] = widen(chance);
             total = [total[0] + low, total[1] + high];
         }
-        let totals: [f64; ROW] = bytemuck::cast(total);
-        let chances: [[f32; ROW]; BRANCHES] = bytemuck::cast(chances);
-        let mut probability = [0.0; ROW];
+        let totals: [f64; LANES] = bytemuck::cast(total);
+        let chances: [[f32; LANES]; BRANCHES] = bytemuck::cast(chances);
+        let mut probability = [0.0; LANES];
         for lane in set_bits(lanes) {
             let (light, total) = (light[lane] as usize, totals[lane]);
             let node = self.leaf[light] as usize;
             probability[lane] = if node < top && RESOLVED.contains(&total) {
                 (f64::from(chances[node][lane]) / total) as f32
             } else {
-                self.probability::<Surface>(&at.receiver(lane), light)
+                self.probability::<OneSided>(&at.receiver(lane), light)
             };
         }
         probability
@@ -101,7 +101,7 @@ impl Tree {
                 power: F32x16::splat(self.power[node]),
                 steady: F32x16::splat(self.steady[node]),
             };
-            *chance = nodes.irradiance::<Surface>(at.point, at.normal);
+            *chance = nodes.irradiance::<OneSided>(at.point, at.normal);
         }
         chances
     }

@@ -36,13 +36,13 @@ fn receivers() -> impl Iterator<Item = Receiver> {
 /// Checks that probabilities sum to 1, agree with those that choices return, and with frequencies.
 fn check(tree: &Tree, at: &Receiver) {
     let lights = tree.leaf.len();
-    let of = |light| f64::from(tree.probability::<Surface>(at, light));
+    let of = |light| f64::from(tree.probability::<OneSided>(at, light));
     let probabilities: Vec<f64> = (0..lights).map(of).collect();
     let sum: f64 = probabilities.iter().sum();
     assert!((sum - 1.0).abs() < 1e-5, "{at:?}: {sum}");
     let mut observed = vec![0_u64; lights];
     for draw in draws(30_000, 1).chain([0.0, 1.0 - f64::EPSILON]) {
-        let (light, probability, _) = tree.choose::<Surface>(at, draw);
+        let (light, probability, _) = tree.choose::<OneSided>(at, draw);
         assert!(probability > 0.0 && (f64::from(probability) / of(light) - 1.0).abs() < 1e-6);
         observed[light] += 1;
     }
@@ -91,7 +91,7 @@ fn few_lights_are_chosen_by_their_contribution() {
     let given: Vec<f64> = lights.iter().map(irradiance).chain([0.7 * 0.8]).collect();
     let total: f64 = given.iter().sum();
     for (light, given) in given.into_iter().enumerate() {
-        let probability = f64::from(tree.probability::<Surface>(&at, light));
+        let probability = f64::from(tree.probability::<OneSided>(&at, light));
         assert!((probability - given / total).abs() < 1e-6, "{light}: {probability}");
     }
 }
@@ -102,7 +102,8 @@ fn thousands_of_lights_are_chosen_by_their_contribution() {
     let point = Vec3::new(0.1, 0.2, 0.3);
     lights.push(emitter(DVec3::new(0.1, 0.2, 0.31), 0.005, 1.0));
     let tree = Tree::new(&lights).expect("all shine");
-    let facing = |normal| tree.probability::<Surface>(&Receiver { point, normal, own: MISS }, 5000);
+    let facing =
+        |normal| tree.probability::<OneSided>(&Receiver { point, normal, own: MISS }, 5000);
     // It is seen among 300 others at first.
     assert!(facing(Vec3::Z) > 0.05, "{}", facing(Vec3::Z));
     assert!(facing(Vec3::NEG_Z) > 0.0);
@@ -117,10 +118,10 @@ fn luminous_lights_only_are_chosen() {
     assert!(Tree::new(&[]).is_none() && Tree::new(&emitters(&dark)).is_none());
     let tree = Tree::new(&emitters(&[0.0, 1.0, f64::NAN, 1e-300, 1e300])).expect("three shine");
     for at in receivers() {
-        let chances = [0, 1, 2, 3, 4].map(|light| tree.probability::<Surface>(&at, light));
+        let chances = [0, 1, 2, 3, 4].map(|light| tree.probability::<OneSided>(&at, light));
         assert!(chances[0] == 0.0 && chances[2] == 0.0, "{chances:?}");
         assert!(chances[3] > 0.0 && chances[1] > 0.0 && chances[4] > 0.99, "{chances:?}");
-        assert_eq!(tree.choose::<Surface>(&at, 1.0 - f64::EPSILON).0, 4);
+        assert_eq!(tree.choose::<OneSided>(&at, 1.0 - f64::EPSILON).0, 4);
     }
 }
 
@@ -129,7 +130,7 @@ fn coincident_lights_have_equal_probabilities() {
     let tree = Tree::new(&vec![emitter(DVec3::X, 0.01, 1.0); 1000]).expect("all shine");
     for at in receivers() {
         for light in 0..1000 {
-            let probability = tree.probability::<Surface>(&at, light);
+            let probability = tree.probability::<OneSided>(&at, light);
             assert!((2e-4..5e-3).contains(&probability), "{light}: {probability}");
         }
     }
@@ -142,7 +143,7 @@ fn an_enclosing_emitter_is_not_chosen() {
     let tree = Tree::new(&[around, emitter(DVec3::Z, 0.1, 1e-3)]).expect("both shine");
     let at = Receiver { point: Vec3::ZERO, normal: Vec3::Z, own: MISS };
     assert_eq!(
-        (tree.probability::<Surface>(&at, 0), tree.probability::<Surface>(&at, 1)),
+        (tree.probability::<OneSided>(&at, 0), tree.probability::<OneSided>(&at, 1)),
         (0.0, 1.0)
     );
 }
