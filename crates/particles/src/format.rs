@@ -109,6 +109,14 @@ impl Format {
         )
     }
 
+    /// Returns whether files of this format hold single molecules, which have no direction of their own.
+    pub fn has_molecules(self) -> bool {
+        matches!(
+            self,
+            Self::Pdb | Self::MmCif | Self::BinaryCif | Self::Pqr | Self::Sdf | Self::Mol2
+        )
+    }
+
     /// Returns whether files of this format are topologies, which lack positions.
     pub(crate) fn lacks_positions(self) -> bool {
         matches!(self, Self::Psf | Self::Prmtop)

@@ -100,10 +100,8 @@ impl Orientation {
     /// Finds the orientation of particles.
     pub fn of(particles: &Particles) -> Self {
         let (spheres, cell) = (&particles.spheres, particles.frame.cell.as_ref());
-        let molecules = matches!(
-            particles.frame.format,
-            Format::Pdb | Format::MmCif | Format::Pqr | Format::Sdf | Format::Mol2
-        ) || particles.frame.format == Format::Xyz && cell.is_none();
+        let molecules = particles.frame.format.has_molecules()
+            || particles.frame.format == Format::Xyz && cell.is_none();
         let cell = cell.filter(|_| !molecules);
         let radius = median_radius(spheres);
         let gaps = cell.map(|cell| gaps(spheres, cell));
@@ -376,6 +374,7 @@ mod tests {
             let expected = match format {
                 Format::Pdb
                 | Format::MmCif
+                | Format::BinaryCif
                 | Format::Pqr
                 | Format::Sdf
                 | Format::Mol2
