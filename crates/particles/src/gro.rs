@@ -142,10 +142,25 @@ fn kind(key: &str) -> Kind {
     naming::of_atom(name.trim(), residue.trim())
 }
 
+/// Returns the numbers of a line in columns of equal width that no blanks separate; `None` if its decimal points are not
+/// at equal distances.
+fn touching(line: &[u8]) -> Option<Vec<&[u8]>> {
+    let line = line.trim_ascii_end();
+    let points: Vec<usize> = memchr_iter(b'.', line).collect();
+    let width = points.get(1)? - points[0];
+    let decimals = line.len() - points.last()?;
+    let is_even = decimals < width && points.windows(2).all(|pair| pair[1] - pair[0] == width);
+    let ends = || points.iter().map(|point| point + decimals);
+    is_even.then(|| ends().map(|end| fixed(line, end.saturating_sub(width), end)).collect())
+}
+
 /// Parses the box: its lengths, then, if it is tilted, the other components of its edges.
 fn cell(line: &Line) -> Result<Option<Cell>, FileError> {
     let mut values = [0.0; 9];
-    let mut fields = line.fields();
+    let fields: Vec<&[u8]> = line.fields().collect();
+    let is_free = fields.iter().take(9).all(|field| number::parse(field).is_some());
+    let fields = if is_free { fields } else { touching(line.bytes).unwrap_or(fields) };
+    let mut fields = fields.into_iter();
     for (at, value) in values.iter_mut().enumerate() {
         match fields.next() {
             Some(field) => *value = line.number(field)?,
@@ -204,7 +219,12 @@ impl FrameReader for Gro {
 /// Returns whether these are the second and third line of a GRO file.
 pub(crate) fn is_gro(second: &[u8], third: &[u8]) -> bool {
     let count = number::whole(second).is_some();
-    let residue = third.get(..5).is_some_and(|field| number::whole(field).is_some());
+    // Numbers of residues may be negative.
+    let number = |field: &[u8]| {
+        let field = field.trim_ascii();
+        number::whole(field.strip_prefix(b"-").unwrap_or(field)).is_some()
+    };
+    let residue = third.get(..5).is_some_and(number);
     let width = third.get(POSITION..).and_then(|positions| {
         let mut points = memchr_iter(b'.', positions);
         let first = points.next()?;
@@ -212,4 +232,34 @@ pub(crate) fn is_gro(second: &[u8], third: &[u8]) -> bool {
     });
     let x = |width| third.get(POSITION..POSITION + width);
     count && residue && width.and_then(x).is_some_and(|x| number::parse(x.trim_ascii()).is_some())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn numbers_of_a_box_may_touch() {
+        let path = Path::new("p").into();
+        let vectors = |text: &str| {
+            let cell = cell(&Line::new(&path, 1, text.as_bytes())).expect(text);
+            cell.map(|cell| cell.vectors.map(|vector| vector.to_array()))
+        };
+        let tilted = "1234.50000 123.45678  77.12345   0.00000   0.00000-411.50000   0.00000-411.50000-411.50000";
+        let expected = [[1234.5, 0.0, 0.0], [-411.5, 123.45678, 0.0], [-411.5, -411.5, 77.12345]];
+        assert_eq!(vectors(tilted), Some(expected));
+        let straight = [[1000.0, 0.0, 0.0], [0.0, 2000.0, 0.0], [0.0, 0.0, 3000.0]];
+        assert_eq!(vectors("1000.000002000.000003000.00000"), Some(straight));
+        assert_eq!(vectors(" 1e3 2000. 3000.0 "), Some(straight));
+        assert!(cell(&Line::new(&path, 1, b"1.0x2.0 3.0 4.00")).is_err());
+    }
+
+    #[test]
+    fn residues_may_have_negative_numbers() {
+        let row = |number: &str| format!("{number:>5}HIS      N    1   0.305   0.837   1.095");
+        for (number, expected) in [("1", true), ("-3", true), ("3-", false), ("-", false)] {
+            assert_eq!(is_gro(b"    2", row(number).as_bytes()), expected, "{number}");
+        }
+    }
 }

@@ -68,6 +68,14 @@ fn add_bond(
     bonds.push_named(path, bond, kind)
 }
 
+/// Returns a line up to a comment: a `#` at its beginning or after a blank.
+fn without_comment(line: &[u8]) -> &[u8] {
+    let mut marks = memchr::memchr_iter(b'#', line);
+    let is_comment =
+        |at: &usize| at.checked_sub(1).is_none_or(|before| line[before].is_ascii_whitespace());
+    &line[..marks.find(is_comment).unwrap_or(line.len())]
+}
+
 /// Returns the name of the section that a line begins.
 fn section(line: &[u8]) -> Option<&[u8]> {
     line.strip_prefix(SECTION).map(<[u8]>::trim_ascii)
@@ -97,6 +105,7 @@ impl FrameReader for Mol2 {
         let path = self.lines.path().clone();
         let (mut numbers, mut numbering, mut bonds) = (Vec::new(), None, Listed::default());
         while let Some(line) = self.lines.next()? {
+            let line = Line::new(line.path(), line.number_in_file(), without_comment(line.bytes));
             if let Some(section) = section(line.bytes) {
                 inside = section.to_vec();
                 if inside == b"MOLECULE" {

@@ -22,18 +22,24 @@ const END: &[u8] = b"$$$$";
 /// Beginnings of rows in version V3000.
 const V3000: &[u8] = b"M  V30 ";
 
+/// Number of bytes after which a row of version V3000 is not continued.
+const LONGEST: usize = 1 << 16;
+
 /// Reader of the molecules of a file.
 pub(crate) struct Molfile {
     lines: Lines,
     schema: Result<Arc<Schema>, String>,
     reads_bonds: bool,
+    /// A row of version V3000 that several lines make up.
+    joined: Vec<u8>,
 }
 
 impl Molfile {
     pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
         let schema = Schema::new(NAMES.map(str::to_owned).into(), options);
         let reads_bonds = options.reads_bonds();
-        Self { lines: Lines::new(source), schema: schema.map(Arc::new), reads_bonds }
+        let joined = Vec::new();
+        Self { lines: Lines::new(source), schema: schema.map(Arc::new), reads_bonds, joined }
     }
 
     /// Reads the header: the title, and the numbers of atoms and bonds, which version V3000 has elsewhere.
@@ -59,10 +65,32 @@ impl Molfile {
         Ok(Some((title, Some(Counts { atoms, bonds }))))
     }
 
+    /// Returns the next line; in version V3000 with those that continue it, which follow a `-` at the end.
+    fn row(&mut self) -> Result<Option<Line<'_>>, FileError> {
+        let is_continued = |line: &Line| {
+            line.bytes.starts_with(V3000) && line.bytes.trim_ascii_end().ends_with(b"-")
+        };
+        let Some(line) = self.lines.next()?.filter(is_continued) else {
+            self.lines.back();
+            return self.lines.next();
+        };
+        let number = line.number_in_file();
+        self.joined.clear();
+        self.joined.extend_from_slice(line.bytes.trim_ascii_end());
+        while self.joined.last() == Some(&b'-') && self.joined.len() < LONGEST {
+            self.joined.pop();
+            let Some(line) = self.lines.next()? else { break };
+            self.joined.extend_from_slice(
+                line.bytes.strip_prefix(V3000).unwrap_or(line.bytes).trim_ascii_end(),
+            );
+        }
+        Ok(Some(Line::new(self.lines.path(), number, &self.joined)))
+    }
+
     /// Finds the rows of atoms of version V3000, and returns their number.
     fn extended(&mut self) -> Result<u64, FileError> {
         let mut count = None;
-        while let Some(line) = self.lines.next()? {
+        while let Some(line) = self.row()? {
             let mut words =
                 line.bytes.strip_prefix(V3000).map(Fields::blanks).into_iter().flatten();
             match (words.next(), words.next()) {
@@ -83,7 +111,7 @@ impl Molfile {
         let mut rest = plain;
         let mut inside = plain.is_some();
         while rest != Some(0) {
-            let Some(line) = self.lines.next()? else {
+            let Some(line) = self.row()? else {
                 return if plain.is_none() {
                     Ok(bonds.finish())
                 } else {
@@ -173,7 +201,10 @@ impl FrameReader for Molfile {
         };
         let mut builder = Builder::new(self.lines.path(), Format::Sdf, &schema);
         for atom in 0..count {
-            let line = self.lines.row(atom, count, "atoms", "the file is cut off")?;
+            let Some(line) = self.row()? else {
+                let message = format!("the file ends after {atom} of {count} atoms");
+                return Err(self.lines.ended(message).with_help("the file is cut off"));
+            };
             builder.row(&line, fields(&line, plain.is_none())?.into_iter())?;
         }
         let bonds = if self.reads_bonds {

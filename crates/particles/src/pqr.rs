@@ -1,11 +1,15 @@
-//! Reads PQR of PDB2PQR, APBS and `MDAnalysis`: rows of PDB whose fields are separated by blanks, with a charge
-//! and a radius in angstrom (apbs.readthedocs.io/en/latest/formats/pqr.html).
+//! Reads PQR of PDB2PQR, APBS and `MDAnalysis`: rows of PDB whose fields are separated by blanks, or in the columns of PDB
+//! where they touch, with a charge and a radius in angstrom (apbs.readthedocs.io/en/latest/formats/pqr.html).
 
 use crate::lines::{Line, Lines};
 use crate::schema::{Naming, Schema, Slot};
 use crate::{
-    FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder, fields::Fields,
-    frame_reader::FrameReader, number, source::Source,
+    FileError, Format, LengthUnit, ParticleFrame, ReadOptions,
+    builder::Builder,
+    fields::{Fields, fixed},
+    frame_reader::FrameReader,
+    number,
+    source::Source,
 };
 use std::path::Path;
 use std::sync::Arc;
@@ -19,6 +23,9 @@ const TEXTS: [&str; 5] = ["number", "name", "residue", "chain", "residue_number"
 
 /// Index of the chain.
 const CHAIN: usize = 3;
+
+/// Index of the first number: the position, charge and radius are last.
+const NUMBERS: usize = 5;
 
 /// Number of rows from which the format is detected.
 const ROWS: usize = 64;
@@ -41,6 +48,16 @@ fn is_atom(line: &[u8]) -> bool {
     line.starts_with(b"ATOM") || line.starts_with(b"HETATM")
 }
 
+/// Returns the fields of a row in the columns of PDB, after which blanks separate the charge and the radius.
+fn aligned(line: &[u8]) -> Option<[&[u8]; 10]> {
+    let part = |start: usize, end: usize| fixed(line, start, end);
+    let mut rest = Fields::blanks(line.get(54..)?);
+    let (charge, radius) = (rest.next()?, rest.next()?);
+    let [number, name, residue, chain] = [part(6, 11), part(12, 16), part(17, 21), part(21, 22)];
+    let [x, y, z] = [part(30, 38), part(38, 46), part(46, 54)];
+    Some([number, name, residue, chain, part(22, 27), x, y, z, charge, radius])
+}
+
 /// Returns the fields of a row, in the order of [`NAMES`].
 fn fields<'l>(line: &Line<'l>) -> Result<[&'l [u8]; 10], FileError> {
     let mut fields: Vec<&[u8]> = line.fields().skip(1).collect();
@@ -51,7 +68,15 @@ fn fields<'l>(line: &Line<'l>) -> Result<[&'l [u8]; 10], FileError> {
     if fields.len() == NAMES.len() - 1 {
         fields.insert(CHAIN, b"");
     }
-    fields.try_into().map_err(|_| {
+    let are_numbers =
+        |fields: &[&[u8]; 10]| fields[NUMBERS..].iter().all(|field| number::parse(field).is_some());
+    let free = <[&[u8]; 10]>::try_from(fields);
+    if !free.as_ref().is_ok_and(are_numbers)
+        && let Some(fields) = aligned(line.bytes).filter(are_numbers)
+    {
+        return Ok(fields);
+    }
+    free.map_err(|_| {
         let help = "a row is ATOM, number, name, residue, chain, residue number, x, y, z, charge and radius, \
                     separated by blanks; the chain may be missing";
         line.whole("not the columns of PQR").with_help(help)
@@ -123,5 +148,27 @@ mod tests {
             assert!(!is(other, "a.txt"), "{other}");
         }
         assert!(is(element, "a.pqr"));
+    }
+
+    #[test]
+    fn columns_may_touch() {
+        for (row, expected) in [
+            (
+                "ATOM     41  O   ASN A  64     -30.125 -61.500-101.250  0.5000 1.6000",
+                ["ASN", "A", "64", "-30.125", "-61.500", "-101.250", "0.5000", "1.6000"],
+            ),
+            (
+                "ATOM     42  N   ASN A  64     -31.125-161.500-101.250 -0.5000 1.5500",
+                ["ASN", "A", "64", "-31.125", "-161.500", "-101.250", "-0.5000", "1.5500"],
+            ),
+            (
+                "ATOM     43  N   ASN   100     -31.125 161.500 101.250 -0.5000 1.5500",
+                ["ASN", "", "100", "-31.125", "161.500", "101.250", "-0.5000", "1.5500"],
+            ),
+        ] {
+            let path = Path::new("p").into();
+            let fields = fields(&Line::new(&path, 1, row.as_bytes())).expect(row);
+            assert_eq!(fields[2..], expected.map(str::as_bytes), "{row}");
+        }
     }
 }

@@ -229,6 +229,23 @@ fn distances_complete_partial_lists() {
 }
 
 #[test]
+fn comments_and_continued_lines_are_no_rows() {
+    let comments = MOL2
+        .replace("5 O 0", "# atoms\n5 O 0")
+        .replace("1 HOH 0\n6", "1 HOH 0 # oxygen\n6")
+        .replace("2 7 5 ar", "#\tlast\n2 7 5 ar # x");
+    let none = [0; 3];
+    let expected = [(0, 1, none, "1"), (0, 2, none, "ar")];
+    assert_eq!(rows(&bonds(&format!("{comments}\n#\tEnd of record\n"), "first")), expected);
+    let continued = V3000
+        .replace("COUNTS 3 2", "COUNTS -\nM  V30 3 2")
+        .replace("1 O 0 0 0 0", "1 O 0 0 0 0 -\nM  V30 CFG=2 -\nM  V30 CHG=1")
+        .replace("2 4 3 1", "2 4 -\nM  V30 3 1");
+    let expected = [(0, 1, none, "1"), (0, 2, none, "4")];
+    assert_eq!(rows(&bonds(&continued, "first")), expected);
+}
+
+#[test]
 fn malformed_bonds_are_reported_at_their_line() {
     for (content, from, to, expected) in [
         (
