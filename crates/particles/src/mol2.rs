@@ -64,8 +64,10 @@ fn add_bond(
     if kind == b"nc" {
         return Ok(());
     }
-    let bond = (numbering.row(line, first)?, numbering.row(line, second)?, [0; 3]);
-    bonds.push_named(path, bond, kind)
+    match bonds.ends([numbering.row(line, first)?, numbering.row(line, second)?]) {
+        Some([first, second]) => bonds.push_named(path, (first, second, [0; 3]), kind),
+        None => Ok(()),
+    }
 }
 
 /// Returns a line up to a comment: a `#` at its beginning or after a blank.

@@ -150,7 +150,9 @@ impl Molfile {
                 return Err(wrong());
             }
             let row = |field| row_from_one(&line, field, atoms);
-            bonds.push_named(&path, (row(first)?, row(second)?, [0; 3]), kind)?;
+            if let Some([first, second]) = bonds.ends([row(first)?, row(second)?]) {
+                bonds.push_named(&path, (first, second, [0; 3]), kind)?;
+            }
         }
         Ok(bonds.finish())
     }

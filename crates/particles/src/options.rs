@@ -156,7 +156,7 @@ pub struct ReadOptions {
 impl ReadOptions {
     /// Returns whether bonds that the file lists are read.
     pub(crate) fn reads_bonds(&self) -> bool {
-        matches!(self.bonds, BondSource::Auto | BondSource::File | BondSource::OfCrystals)
+        self.bonds.reads_file()
     }
 
     /// Checks that every number is in range.

@@ -6,7 +6,7 @@
 //! numbers that aren't needed.
 
 use crate::alternates::{AlternateAtom, Alternates};
-use crate::bonds::{Listed, unknown};
+use crate::bonds::Listed;
 use crate::element::{is_virtual_site, of_aligned_name};
 use crate::lines::{Line, Lines};
 use crate::schema::{Naming, Schema, Slot};
@@ -14,7 +14,6 @@ use crate::source::{Source, is_standard_input};
 use crate::{
     Bonds, Cell, Element, FileError, Format, Kind, LengthUnit, ParticleFrame, ReadOptions,
     ReadProgress, Role, builder::Builder, fields::fixed, frame_reader::FrameReader, number,
-    undrawn::Undrawn,
 };
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -75,8 +74,8 @@ pub(crate) struct Pdb {
 /// Serial number of an atom, as text: it may be hexadecimal or hybrid-36.
 type Serial = [u8; 5];
 
-/// A bond of a record: the serial numbers of its atoms, and the number of its line.
-type ListedBond = ([Serial; 2], usize);
+/// A bond of a record: the serial numbers of its atoms.
+type ListedBond = [Serial; 2];
 
 /// Bonds of the file.
 struct BondRecords {
@@ -133,7 +132,6 @@ impl FrameReader for Pdb {
         // The type is derived from several columns unless the user names one.
         let has_kind = others.iter().any(|(_, slot)| *slot == Slot::Kind);
         let mut alternates = Alternates::default();
-        let mut bonds = HashSet::new();
         let mut serials: HashMap<Serial, u32> = HashMap::new();
         let (reads_bonds, mut own_bonds) = (self.bonds.is_some(), Vec::new());
         let mut at_end = true;
@@ -177,11 +175,7 @@ impl FrameReader for Pdb {
                     at_end = false;
                     break;
                 }
-                Record::Bond if reads_bonds => {
-                    let number = line.number_in_file();
-                    own_bonds.extend(bonds_of(line.bytes).map(|ends| (ends, number)));
-                }
-                Record::Bond => bonds.extend(bonds_of(line.bytes)),
+                Record::Bond if reads_bonds => own_bonds.extend(bonds_of(line.bytes)),
                 Record::EndModel if atoms => {
                     ended = true;
                     self.cell_follows |= self.cell.is_none();
@@ -190,7 +184,7 @@ impl FrameReader for Pdb {
                     ended = atoms;
                     self.cell_follows = false;
                 }
-                Record::Begin | Record::EndModel | Record::Other => (),
+                Record::Bond | Record::Begin | Record::EndModel | Record::Other => (),
             }
         }
         if !atoms {
@@ -204,7 +198,6 @@ impl FrameReader for Pdb {
             add_bonds(path, &mut frame, list, &serials)?;
         }
         alternates.choose(&mut frame);
-        frame.add_undrawn(Undrawn::Bonds, bonds.len() as u64);
         let title = self.title.split_whitespace().collect::<Vec<_>>().join(" ");
         Ok(Some(ParticleFrame { title, cell: self.cell, unit: LengthUnit::Angstrom, ..frame }))
     }
@@ -277,18 +270,17 @@ fn add_bonds(
     serials: &HashMap<Serial, u32>,
 ) -> Result<(), FileError> {
     let (mut bonds, mut ambiguous) = (Listed::default(), 0_u64);
-    for (ends, number) in list {
-        let mut rows = [0; 2];
-        for (row, serial) in rows.iter_mut().zip(ends) {
-            *row = *serials.get(serial).ok_or_else(|| {
-                let text = [&b"CONECT"[..], &ends[0], &ends[1]].concat();
-                unknown(&Line::new(path, *number, &text), serial)
-            })?;
+    // Records repeat bonds, but each counts once.
+    let mut dangling = HashSet::new();
+    for ends in list {
+        let rows = ends.map(|serial| serials.get(&serial).copied());
+        if rows.contains(&None) && !dangling.insert(ends) {
+            continue;
         }
-        if rows.contains(&MANY) {
-            ambiguous += 1;
-        } else {
-            bonds.push(path, (rows[0], rows[1], [0; 3]))?;
+        match bonds.ends(rows) {
+            Some(rows) if rows.contains(&MANY) => ambiguous += 1,
+            Some([first, second]) => bonds.push(path, (first, second, [0; 3]))?,
+            None => (),
         }
     }
     if ambiguous > 0 {
@@ -321,10 +313,7 @@ fn last_bonds(path: &Path) -> Result<Vec<ListedBond>, FileError> {
     while let Some(line) = lines.next()? {
         match Record::of(line.bytes) {
             Record::Atom => list.clear(),
-            Record::Bond => {
-                let number = line.number_in_file();
-                list.extend(bonds_of(line.bytes).map(|ends| (ends, number)));
-            }
+            Record::Bond => list.extend(bonds_of(line.bytes)),
             _ => (),
         }
     }

@@ -77,7 +77,9 @@ impl Psf {
                     return Err(line.whole("an atom without another one").with_help(help));
                 };
                 let row = |field| row_from_one(&line, field, atoms);
-                bonds.push(&path, (row(first)?, row(second)?, [0; 3]))?;
+                if let Some([first, second]) = bonds.ends([row(first)?, row(second)?]) {
+                    bonds.push(&path, (first, second, [0; 3]))?;
+                }
                 *rest = rest.checked_sub(1).ok_or_else(|| {
                     let help = "correct the number of bonds before !NBOND";
                     line.error_at(first, "more bonds than the section has").with_help(help)

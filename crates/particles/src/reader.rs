@@ -55,7 +55,7 @@ impl Frames {
         }
         let shapes = ShapeColumns::ask(&mut inner);
         let reader: Box<dyn FrameReader> = match &inner.topology {
-            None => open_positions(path, &inner)?,
+            None => open_positions(path, &inner)?.1,
             Some(topology) => Box::new(Joined::new(path, topology, &inner)?),
         };
         Ok(Self {
@@ -192,18 +192,18 @@ impl Alignment {
     }
 }
 
-/// Returns the reader of a file of positions, without its topology.
+/// Returns the reader of a file of positions, without its topology, and its format.
 pub(crate) fn open_positions(
     path: &Path,
     options: &ReadOptions,
-) -> Result<Box<dyn FrameReader>, FileError> {
+) -> Result<(Format, Box<dyn FrameReader>), FileError> {
     let (format, reader) = open(path, options)?;
     if format.lacks_positions() {
         let error = FileError::whole_file(path, "is a topology, without positions");
         let name = path.display();
         return Err(error.with_help(format!("name a trajectory, and give it --topology {name}")));
     }
-    Ok(reader)
+    Ok((format, reader))
 }
 
 /// Returns the reader of a file and its format; a topology may lack positions.
@@ -213,7 +213,8 @@ pub(crate) fn open(
 ) -> Result<(Format, Box<dyn FrameReader>), FileError> {
     let source = Source::open(path, &options.progress)?;
     let format = sniff::format(&source, options)?;
-    let reader = (formats::row(format).open)(source, options)?;
+    let bonds = options.bonds.for_format(format);
+    let reader = (formats::row(format).open)(source, &ReadOptions { bonds, ..options.clone() })?;
     Ok((format, reader))
 }
 

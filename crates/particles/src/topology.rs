@@ -68,15 +68,16 @@ impl Joined {
             bonds: BondSource::None,
             ..options.clone()
         };
+        let (format, frames) = reader::open_positions(path, &trajectory)?;
+        let reads_bonds = options.bonds.for_format(format).reads_file();
         let options = ReadOptions {
             format: None,
             columns: columns(others),
             radii: options.radii.clone(),
             atom_style: options.atom_style.clone(),
-            bonds: options.bonds.clone(),
+            bonds: if reads_bonds { BondSource::Auto } else { BondSource::None },
             ..ReadOptions::default()
         };
-        let frames = reader::open_positions(path, &trajectory)?;
         let topology = topology.to_owned();
         Ok(Self {
             path: path.to_owned(),

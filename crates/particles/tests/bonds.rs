@@ -228,6 +228,106 @@ fn distances_complete_partial_lists() {
     assert!(error.starts_with("input: has no bonds in it"), "{error}");
 }
 
+/// Returns the warnings of bonds that end nowhere.
+fn dangling(frame: &ParticleFrame) -> Vec<&str> {
+    let warnings = frame.warnings.iter().map(String::as_str);
+    warnings.filter(|warning| warning.contains("at no atom")).collect()
+}
+
+#[test]
+fn bonds_that_end_nowhere_are_left_out_and_counted() {
+    for (content, from, to, left, count) in [
+        (LAMMPS, "1 2 10 30", "1 2 10 31", 1, "1 "),
+        (PDB, "CONECT    8    7", "CONECT    8    7    6    6", 2, "1 "),
+        (MMCIF, "1 disulf A 1", "1 disulf B 1", 2, "1 "),
+        (CIF, "Na1 Cl1 1.8", "Na2 Cl1 1.8", 1, "1 "),
+        (CIF, "2_655", "3_655", 2, "1 "),
+        (CIF, "2_655", "2_6", 2, "1 "),
+        (CIF, "2_655", "0_655", 2, "1 "),
+        (CIF, "1.8 .\nCl1 Cl1 0.4 2_655", "1.8 7_555\nNa1 H1 1 .", 0, "2 "),
+        (SDF, "  3  1  4", "  3  9  4", 1, "1 "),
+        (SDF, "  3  1  4", "  3  0  4", 1, "1 "),
+        (V3000, "2 4 3 1", "2 4 3 7", 1, "1 "),
+        (MOL2, "2 7 5 ar", "2 7 8 ar", 1, "1 "),
+    ] {
+        let content = content.replacen(from, to, 1);
+        let file = File::new(&content);
+        let frame = file.read("file", "first").unwrap_or_else(|error| panic!("{to}: {error}"));
+        assert_eq!(frame.bonds.as_ref().map(Bonds::len), Some(left), "{content}");
+        let warnings = dangling(&frame);
+        assert!(warnings.len() == 1 && warnings[0].starts_with(count), "{to}: {warnings:?}");
+        for bonds in ["none", "*-*<1.1"] {
+            let frame = file.read(bonds, "first").expect("a frame");
+            assert!(dangling(&frame).is_empty(), "{to}");
+        }
+    }
+    let molecule = File::new("3\n\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n");
+    let topology = File::new(&PSF.replacen(" 1 2 3 1\n", " 1 2 3 4\n", 1));
+    for (bonds, expected) in [(BondSource::File, 1), (BondSource::OfCrystals, 0)] {
+        let topology = Some(topology.path());
+        let options = ReadOptions { topology, bonds, ..ReadOptions::default() };
+        let frame = read_frame(&molecule.path(), &options).expect("a frame");
+        assert_eq!(dangling(&frame).len(), expected);
+        assert_eq!(frame.bonds.map_or(0, |bonds| bonds.len()), expected);
+    }
+    // Bonds of GSD are pairs of rows.
+    let sample = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/particles/bonds.gsd");
+    let mut bytes = std::fs::read(sample).expect("a file");
+    let group = [0_u32, 1, 1, 2].map(u32::to_le_bytes).concat();
+    let at = bytes.windows(group.len()).position(|window| window == group).expect("bonds");
+    bytes[at] = 200;
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("input");
+    std::fs::write(&path, bytes).expect("a file");
+    let options = ReadOptions { bonds: BondSource::File, ..ReadOptions::default() };
+    let frame = read_frame(&path, &options).expect("a frame");
+    assert_eq!((dangling(&frame).len(), frame.bonds.map_or(0, |bonds| bonds.len())), (1, 1));
+}
+
+#[test]
+fn pictures_without_bonds_read_none() {
+    for content in [LAMMPS, PDB, MMCIF, SDF, V3000, MOL2] {
+        // Rows of bonds that could not be read.
+        let broken = content
+            .replace("1 2 10 30", "1 x")
+            .replace("  1  2  1  0", "  x")
+            .replace("M  V30 1 1 1 2", "M  V30 x")
+            .replace("1 5 6 1", "x");
+        for bonds in [BondSource::None, BondSource::OfCrystals] {
+            let options = ReadOptions { bonds, ..ReadOptions::default() };
+            let frame = read_frame(&File::new(&broken).path(), &options).expect("a frame");
+            assert_eq!(frame.bonds, None);
+            assert!(frame.warnings.iter().all(|warning| !warning.contains("bond")), "{content}");
+        }
+    }
+}
+
+#[test]
+fn connections_find_atoms_by_what_their_rows_give() {
+    let atoms = "data_t\nloop_\n_atom_site.type_symbol\n_atom_site.label_atom_id\n_atom_site.label_comp_id\n\
+        _atom_site.label_asym_id\n_atom_site.label_seq_id\n_atom_site.auth_seq_id\n_atom_site.auth_asym_id\n\
+        _atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n\
+        S SG CYS A 1 11 B 0 0 0\nS SG CYS A 7 17 B 2.0 0 0\nS SG CYS C 7 17 D 9.0 0 0\n\
+        loop_\n_struct_conn.conn_type_id\n";
+    for (columns, row, expected) in [
+        ("auth_asym_id auth_seq_id label_atom_id", "B 11 SG B 17 SG", 1),
+        ("label_asym_id label_seq_id label_atom_id", "A 1 SG A 7 SG", 1),
+        ("label_seq_id label_comp_id label_atom_id", "1 CYS SG 7 CYS SG", 0),
+        ("auth_asym_id label_seq_id label_comp_id label_atom_id", "B 1 CYS SG B 7 ? SG", 1),
+        ("auth_asym_id auth_seq_id label_atom_id", "B 11 SG B 18 SG", 0),
+        ("auth_asym_id auth_seq_id label_atom_id", "B 11 SG B 17 CB", 0),
+    ] {
+        let tags = [1, 2].map(|atom| {
+            let tag = |name| format!("_struct_conn.ptnr{atom}_{name}\n");
+            columns.split(' ').map(tag).collect::<String>()
+        });
+        let content = format!("{atoms}{}disulf {row}\n", tags.concat());
+        let frame = File::new(&content).read("file", "first").expect("a frame");
+        assert_eq!(dangling(&frame).len(), 1 - expected, "{row}");
+        assert_eq!(frame.bonds.map_or(0, |bonds| bonds.len()), expected, "{row}");
+    }
+}
+
 #[test]
 fn comments_and_continued_lines_are_no_rows() {
     let comments = MOL2
@@ -245,31 +345,66 @@ fn comments_and_continued_lines_are_no_rows() {
     assert_eq!(rows(&bonds(&continued, "first")), expected);
 }
 
+const COMPONENTS: &str = "data_XYZ\n_chem_comp.id XYZ\n_chem_comp.name 'a ligand'\nloop_\n_chem_comp_atom.comp_id\n\
+    _chem_comp_atom.atom_id\n_chem_comp_atom.type_symbol\n_chem_comp_atom.model_Cartn_x\n\
+    _chem_comp_atom.model_Cartn_y\n_chem_comp_atom.model_Cartn_z\n\
+    _chem_comp_atom.pdbx_model_Cartn_x_ideal\n_chem_comp_atom.pdbx_model_Cartn_y_ideal\n\
+    _chem_comp_atom.pdbx_model_Cartn_z_ideal\nXYZ C1 C 0 0 0 ? ? ?\nXYZ O1 O 1.2 0 0 7 7 7\nXYZ H1 H 0 -1 0 ? ? ?\n\
+    loop_\n_chem_comp_bond.comp_id\n_chem_comp_bond.atom_id_1\n_chem_comp_bond.atom_id_2\n\
+    _chem_comp_bond.value_order\nXYZ C1 O1 DOUB\nXYZ C1 H1 SING\n\
+    data_NA\n_chem_comp_atom.comp_id NA\n_chem_comp_atom.atom_id NA\n_chem_comp_atom.type_symbol NA\n\
+    _chem_comp_atom.model_Cartn_x ?\n_chem_comp_atom.model_Cartn_y ?\n_chem_comp_atom.model_Cartn_z ?\n\
+    _chem_comp_atom.pdbx_model_Cartn_x_ideal 5\n_chem_comp_atom.pdbx_model_Cartn_y_ideal 6\n\
+    _chem_comp_atom.pdbx_model_Cartn_z_ideal 7\n";
+
+#[test]
+fn ligand_definitions_are_frames() {
+    let file = File::new(COMPONENTS);
+    let frame = file.read("auto", "0").expect("a frame");
+    assert_eq!((&frame.x[..], &frame.title[..]), (&[0.0, 1.2, 0.0][..], "a ligand"));
+    let symbols = |frame: &ParticleFrame| -> Vec<&str> {
+        let kinds = frame.kinds.table.iter();
+        kinds.filter_map(|kind| Some(kind.element?.symbol())).collect()
+    };
+    assert_eq!(symbols(&frame), ["C", "O", "H"]);
+    let bonds = frame.bonds.as_ref().expect("bonds");
+    assert_eq!(rows(bonds), [(0, 1, [0; 3], "doub"), (0, 2, [0; 3], "sing")]);
+    assert!(!bonds.partial);
+    assert!(frame.warnings.iter().any(|warning| warning.contains("--frame")));
+    let ion = file.read("auto", "last").expect("a frame");
+    assert_eq!((ion.position(0).to_array(), symbols(&ion)), ([5.0, 6.0, 7.0], vec!["Na"]));
+    let count =
+        |file: &File| spherule_particles::count_frames(&file.path(), &ReadOptions::default());
+    assert_eq!(count(&file).ok(), Some(2));
+    // Loops and items that do not belong together.
+    for table in [
+        "loop_\n_chem_comp_atom.x\n_a\n1 2\n_chem_comp_atom.y 5\n_chem_comp_atom.z 6\n",
+        "_chem_comp_atom.x 5\nloop_\n_chem_comp_atom.y\n_chem_comp_atom.z\n",
+        "loop_\n_struct_conn.id\n_a\n1 2\n",
+    ] {
+        let none = File::new(&format!("data_a\n{table}")).read("auto", "first");
+        assert!(none.is_err() || none.is_ok_and(|frame| frame.is_empty()), "{table}");
+    }
+    // Definitions after or beside the atoms of a structure are not drawn.
+    let beside =
+        MMCIF.replacen("data_x\n", &COMPONENTS[..COMPONENTS.find("data_NA").expect("an ion")], 1);
+    for content in [format!("{MMCIF}{COMPONENTS}"), beside] {
+        let file = File::new(&content);
+        assert_eq!(count(&file).ok(), Some(1), "{content}");
+        assert_eq!(file.read("auto", "first").expect("a frame").len(), 4);
+    }
+}
+
 #[test]
 fn malformed_bonds_are_reported_at_their_line() {
     for (content, from, to, expected) in [
-        (
-            LAMMPS,
-            "1 2 10 30",
-            "1 2 10 31",
-            "input:18:8: a bond to atom 31, but there is no such atom",
-        ),
         (LAMMPS, "1 2 10 30", "1 2 10", "input:18:1: not the columns of a bond"),
         (LAMMPS, "1 2 10 30", "1 2 ten 30", "input:18:5: `ten` is not a whole number"),
         (LAMMPS, "20 1 1 1 5.5", "10 1 1 1 5.5", "input:18:5: several atoms have the number 10"),
         (LAMMPS, "Atoms # molecular", "Bonds\n\n1 1 1 2\n\nAtoms", "precedes the atoms"),
-        (PDB, "CONECT    8    7", "CONECT    8    6", "input:13:1: a bond to atom 6"),
-        (MMCIF, "1 disulf A 1", "1 disulf B 1", "input:17:1: a bond to atom B 1 CYS SG"),
-        (CIF, "Na1 Cl1 1.8", "Na2 Cl1 1.8", "input:22:1: a bond to atom Na2"),
-        (CIF, "2_655", "3_655", "input:23:1: `3_655` is not the code"),
-        (CIF, "2_655", "2_6", "input:23:1: `2_6` is not the code"),
-        (SDF, "  3  1  4", "  3  9  4", "input:9:6: a bond to atom 9"),
-        (SDF, "  3  1  4", "  3  0  4", "a bond to atom 0"),
         (SDF, "  3  1  4", "  3", "not the columns of a bond"),
         (SDF, "  3  2  0", "  3  4  0", "not the columns of a bond"),
         (V3000, "2 4 3 1", "2 4 3", "not the columns of a bond"),
-        (V3000, "2 4 3 1", "2 4 3 7", "a bond to atom 7"),
-        (MOL2, "2 7 5 ar", "2 7 8 ar", "input:10:5: a bond to atom 8"),
         (MOL2, "2 7 5 ar", "2 7 5", "not the columns of a bond"),
     ] {
         let content = content.replacen(from, to, 1);
@@ -313,9 +448,7 @@ fn bonds_of_a_topology_follow_the_frames() {
     }
     for (from, to, expected) in [
         (" 1 2 3 1\n", " 1 2 3\n", "an atom without another one"),
-        (" 1 2 3 1\n", " 1 2 3 4\n", "a bond to atom 4"),
         (" 1 2 3 1\n", " 1 2 3 1 2 3\n", "more bonds than the section has"),
-        (" 2 !NBOND", " 9 !NBOND", "a bond to atom 0"),
     ] {
         let topology = File::new(&PSF.replace("\n2 !N", "\n 2 !N").replacen(from, to, 1));
         let options = ReadOptions {

@@ -43,46 +43,32 @@ impl Numbering {
         numbering
     }
 
-    /// Returns the row of the atom whose number is a field of a line with a bond.
-    pub(crate) fn row(&self, line: &Line, field: &[u8]) -> Result<u32, FileError> {
-        self.row_of(line, field, unknown)
-    }
-
-    /// Returns the row of the atom whose number is a field of a line; `unknown` makes the error if there is no such atom.
-    pub(crate) fn row_of(
-        &self,
-        line: &Line,
-        field: &[u8],
-        unknown: impl Fn(&Line, &[u8]) -> FileError,
-    ) -> Result<u32, FileError> {
+    /// Returns the row of the atom whose number is a field of a line; `None` if there is no such atom.
+    pub(crate) fn row(&self, line: &Line, field: &[u8]) -> Result<Option<u32>, FileError> {
         let number = line.whole_number(field)?;
         let row = match self {
             Self::Dense(rows) => usize::try_from(number).ok().and_then(|at| rows.get(at)),
             Self::Sparse(rows) => rows.get(&number),
         };
         match row.copied().unwrap_or(NONE) {
-            NONE => Err(unknown(line, field)),
+            NONE => Ok(None),
             MANY => {
                 let error = line.error_at(field, format!("several atoms have the number {number}"));
                 Err(error.with_help("number the atoms, each once"))
             }
-            row => Ok(row),
+            row => Ok(Some(row)),
         }
     }
 }
 
-/// Returns the row of the atom that a field numbers from 1, of `atoms` atoms.
-pub(crate) fn row_from_one(line: &Line, field: &[u8], atoms: usize) -> Result<u32, FileError> {
-    let number = line.whole_number(field)?;
-    let row = number.checked_sub(1).filter(|row| *row < atoms as u64);
-    row.map(|row| row as u32).ok_or_else(|| unknown(line, field))
-}
-
-/// Returns the error for a bond to an atom that doesn't exist.
-pub(crate) fn unknown(line: &Line, field: &[u8]) -> FileError {
-    let name = String::from_utf8_lossy(field.trim_ascii()).into_owned();
-    let error = line.error_at(field, format!("a bond to atom {name}, but there is no such atom"));
-    error.with_help("remove the bond from the file, or read no bonds of it")
+/// Returns the row of the atom that a field numbers from 1, of `atoms` atoms; `None` if there is no such atom.
+pub(crate) fn row_from_one(
+    line: &Line,
+    field: &[u8],
+    atoms: usize,
+) -> Result<Option<u32>, FileError> {
+    let row = line.whole_number(field)?.checked_sub(1);
+    Ok(row.filter(|row| *row < atoms as u64).map(|row| row as u32))
 }
 
 /// Bonds that are being read.
@@ -91,9 +77,19 @@ pub(crate) struct Listed {
     bonds: Vec<(Bond, u32)>,
     kinds: TextColumn,
     book: Codebook,
+    /// Number of bonds that end at no atom.
+    dangling: u64,
 }
 
 impl Listed {
+    /// Returns both ends of a bond; `None` if there is no atom at one of them: then the bond is counted, and left out.
+    pub(crate) fn ends<T>(&mut self, ends: [Option<T>; 2]) -> Option<[T; 2]> {
+        let [first, second] = ends;
+        let ends = first.zip(second).map(|(first, second)| [first, second]);
+        self.dangling += u64::from(ends.is_none());
+        ends
+    }
+
     /// Adds a bond without a type.
     pub(crate) fn push(&mut self, path: &Path, bond: Bond) -> Result<(), FileError> {
         self.push_code(path, bond, 0)
@@ -128,7 +124,7 @@ impl Listed {
 
     /// Returns the bonds, each once; of equal ones, the first in the file.
     pub(crate) fn finish(self) -> Bonds {
-        let Self { mut bonds, mut kinds, .. } = self;
+        let Self { mut bonds, mut kinds, dangling, .. } = self;
         // A stable sort: the first in the file comes first.
         bonds.sort_by_key(|(bond, _)| *bond);
         bonds.dedup_by_key(|(bond, _)| *bond);
@@ -140,7 +136,7 @@ impl Listed {
         }
         let sorted: Vec<Bond> = bonds.iter().map(|(bond, _)| *bond).collect();
         // A bond of an atom to itself is no bond, unless its image is another one.
-        let mut bonds = Bonds { kinds, ..Bonds::of_sorted(&sorted) };
+        let mut bonds = Bonds { kinds, dangling, ..Bonds::of_sorted(&sorted) };
         bonds.map(|(first, second, shift)| {
             (first != second || shift != [0; 3]).then_some((first, second, shift))
         });
@@ -152,7 +148,7 @@ impl Listed {
 mod tests {
     use super::*;
 
-    fn row(numbers: &[f64], field: &str) -> Result<u32, String> {
+    fn row(numbers: &[f64], field: &str) -> Result<Option<u32>, String> {
         let path = Path::new("p").into();
         let line = Line::new(&path, 7, field.as_bytes());
         let row = Numbering::of(numbers).row(&line, line.bytes);
@@ -162,18 +158,14 @@ mod tests {
     #[test]
     fn numbers_become_rows() {
         for numbers in [&[3.0, 1.0, 2.0][..], &[3e9, 1.0, 2.0]] {
-            assert_eq!(row(numbers, "1"), Ok(1));
-            assert_eq!(row(numbers, " 2"), Ok(2));
-            for (field, message) in [
-                ("0", "p:7:1: a bond to atom 0"),
-                ("4", "no such atom"),
-                ("x", "not a whole number"),
-            ] {
-                assert!(row(numbers, field).is_err_and(|error| error.contains(message)), "{field}");
+            for (field, expected) in [("1", Some(1)), (" 2", Some(2)), ("0", None), ("4", None)] {
+                assert_eq!(row(numbers, field), Ok(expected), "{field}");
             }
+            let error = row(numbers, "x").expect_err("a letter");
+            assert!(error.contains("not a whole number"), "{error}");
         }
         assert!(row(&[5.0, 5.0], "5").is_err_and(|error| error.contains("several atoms")));
-        assert!(row(&[f64::NAN, 0.5], "0").is_err());
+        assert_eq!(row(&[f64::NAN, 0.5], "0"), Ok(None));
     }
 
     #[test]

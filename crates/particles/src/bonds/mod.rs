@@ -10,14 +10,15 @@ pub use crate::frame::Bonds;
 pub(crate) use crate::frame::{Bond, ordered};
 pub use distance::from_distance;
 pub(crate) use images::nearest_image;
-pub(crate) use listed::{Listed, Numbering, row_from_one, unknown};
+pub(crate) use listed::{Listed, Numbering, row_from_one};
 pub use rules::{BondRules, BondSource};
 
 use crate::frame::ParticleFrame;
 
 impl ParticleFrame {
     /// Finds the bonds that a source asks for: those of the file stay as they are, others are found by
-    /// distance. Bonds of the file get their shifts by the nearest images.
+    /// distance. Bonds of the file get their shifts by the nearest images, and a warning counts those that end at no
+    /// particle.
     ///
     /// # Errors
     ///
@@ -53,6 +54,14 @@ impl ParticleFrame {
                     }
                 }
             }
+        }
+        let dangling = self.bonds.as_mut().map_or(0, |bonds| std::mem::take(&mut bonds.dangling));
+        if dangling > 0 {
+            let text = match dangling {
+                1 => "1 bond ends at no atom of the file, and is left out".to_owned(),
+                _ => format!("{dangling} bonds end at no atom of the file, and are left out"),
+            };
+            self.warnings.push(text);
         }
         Ok(())
     }

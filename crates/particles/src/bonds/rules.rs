@@ -1,6 +1,6 @@
 //! Rules for bonds: where they come from, and how far bonded particles may be apart.
 
-use crate::{Kind, ParticleFrame, error::clipped, suggest};
+use crate::{Format, Kind, ParticleFrame, error::clipped, suggest};
 use std::str::FromStr;
 
 /// Tolerance of the sum of two covalent radii in angstrom, and the least length of a bond, as in Open
@@ -160,6 +160,19 @@ impl Cutoffs {
 }
 
 impl BondSource {
+    /// Returns whether bonds that a file lists are read.
+    pub(crate) fn reads_file(&self) -> bool {
+        matches!(self, Self::Auto | Self::File | Self::OfCrystals)
+    }
+
+    /// Returns the source for files of a format: bonds of crystals are not read from others.
+    pub(crate) fn for_format(&self, format: Format) -> Self {
+        match self {
+            Self::OfCrystals if !format.is_of_crystals() => Self::None,
+            source => source.clone(),
+        }
+    }
+
     /// Returns a source that also finds the bonds of particles that have none by this one.
     pub(crate) fn for_all(&self) -> Self {
         match self {

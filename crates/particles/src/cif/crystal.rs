@@ -70,8 +70,7 @@ struct Block {
     angles: [f64; 3],
     symmetry: Declared,
     atoms: Option<Atoms>,
-    /// Rows of bonds and of anisotropic displacements.
-    bonds: u64,
+    /// Number of anisotropic displacements.
     displacements: u64,
     geometry: Vec<ListedBond>,
 }
@@ -94,7 +93,6 @@ impl Default for Block {
             angles: [90.0; 3],
             symmetry: Declared::default(),
             atoms: None,
-            bonds: 0,
             displacements: 0,
             geometry: Vec::new(),
         }
@@ -187,8 +185,6 @@ impl Crystal {
         } else if tags_now.iter().any(|tag| tag.starts_with("_geom_bond_atom_site_label")) {
             if self.options.reads_bonds() {
                 block.geometry.extend(geometry::read(&mut self.tokens, &tags_now)?);
-            } else {
-                block.bonds += Rows::count(&mut self.tokens, tags.len())?;
             }
         } else if tags_now.iter().any(|tag| tag.starts_with("_atom_site_aniso_")) {
             block.displacements += Rows::count(&mut self.tokens, tags.len())?;
@@ -277,7 +273,6 @@ impl Crystal {
         });
         place(&mut atoms, &images, &occupancies, &cell, bonds.transpose()?);
         let (unit, title) = (LengthUnit::Angstrom, block.title.1);
-        atoms.add_undrawn(Undrawn::Bonds, block.bonds);
         atoms.add_undrawn(Undrawn::Displacements, block.displacements);
         Ok(Some(ParticleFrame { cell: Some(cell), unit, title, ..atoms }))
     }

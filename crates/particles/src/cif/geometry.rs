@@ -5,7 +5,7 @@ use super::occupancy::Positions;
 use super::rows::Rows;
 use super::symmetry::{Operation, SAME, distance};
 use super::tokens::Tokens;
-use crate::{Bonds, FileError, bonds::Listed, line::Line, number};
+use crate::{Bonds, FileError, bonds::Listed, number};
 use glam::{DMat3, DVec3};
 use std::collections::HashMap;
 use std::path::Path;
@@ -26,8 +26,6 @@ const COLUMNS: [&str; 4] = [
 pub(super) struct ListedBond {
     labels: [Vec<u8>; 2],
     codes: [Vec<u8>; 2],
-    /// The number and text of its line.
-    line: (usize, Vec<u8>),
 }
 
 /// The listed atoms, by which the table names bonds.
@@ -50,12 +48,10 @@ pub(super) fn read(tokens: &mut Tokens, tags: &[String]) -> Result<Vec<ListedBon
     let mut rows = Rows::new(tags.len());
     let mut bonds = Vec::new();
     while rows.read(tokens)? {
-        let line = tokens.line();
         let code = |column: Option<usize>| column.map_or(&b"."[..], |column| rows.field(column));
         bonds.push(ListedBond {
             labels: [first, second].map(|column| rows.field(column).to_vec()),
             codes: [one, other].map(|column| code(column).to_vec()),
-            line: (line.number_in_file(), line.bytes.to_vec()),
         });
     }
     Ok(bonds)
@@ -78,16 +74,11 @@ impl Geometry<'_> {
         let operations = if operations.is_empty() { &identity[..] } else { operations };
         let mut bonds = Listed::default();
         for bond in listed {
-            let line = Line::new(path, bond.line.0, &bond.line.1);
-            let mut ends = [(NOWHERE, Operation::IDENTITY); 2];
-            for (end, (label, code)) in ends.iter_mut().zip(bond.labels.iter().zip(&bond.codes)) {
-                let row = self.labels.get(label).ok_or_else(|| {
-                    let name = String::from_utf8_lossy(label).into_owned();
-                    let message = format!("a bond to atom {name}, but there is no such atom");
-                    line.whole(message).with_help("remove the bond, or read no bonds of the file")
-                })?;
-                *end = (*row, self.operation(&line, code)?);
-            }
+            let ends = [0, 1].map(|end| {
+                let row = self.labels.get(&bond.labels[end]).copied();
+                row.zip(self.operation(&bond.codes[end]))
+            });
+            let Some(ends) = bonds.ends(ends) else { continue };
             if ends.iter().any(|(row, _)| *row == NOWHERE) {
                 continue;
             }
@@ -109,16 +100,11 @@ impl Geometry<'_> {
     }
 
     /// Returns the operation of a symmetry code such as `3_655`: its number in the file, and the edges of the
-    /// cell by which it is shifted, plus 5.
-    fn operation(&self, line: &Line, code: &[u8]) -> Result<Operation, FileError> {
+    /// cell by which it is shifted, plus 5; `None` for other codes, and for operations that the file does not list.
+    fn operation(&self, code: &[u8]) -> Option<Operation> {
         if matches!(code, b"." | b"?" | b"") {
-            return Ok(Operation::IDENTITY);
+            return Some(Operation::IDENTITY);
         }
-        let wrong = |why: &str| {
-            let code = String::from_utf8_lossy(code);
-            let message = format!("`{code}` is not the code of a symmetry operation: {why}");
-            line.whole(message).with_help("codes are written as in 3_655, or . for none")
-        };
         let mut parts = code.splitn(2, |&byte| byte == b'_');
         let number = parts.next().and_then(number::whole).unwrap_or(0) as usize;
         let cells = parts.next().unwrap_or(b"555");
@@ -127,14 +113,13 @@ impl Geometry<'_> {
             [a, b, c] if cells.iter().all(u8::is_ascii_digit) => {
                 DVec3::new(digit(*a), digit(*b), digit(*c))
             }
-            _ => return Err(wrong("it has not three digits for the cell")),
+            _ => return None,
         };
         let moved = Operation { matrix: DMat3::IDENTITY, shift };
-        let index = number.checked_sub(1).ok_or_else(|| wrong("operations begin at 1"))?;
+        let index = number.checked_sub(1)?;
         match self.declared.get(index) {
-            Some(operation) => Ok(moved.after(operation)),
-            None if index == 0 => Ok(moved),
-            None => Err(wrong(&format!("the file lists {} operations", self.declared.len()))),
+            Some(operation) => Some(moved.after(operation)),
+            None => (index == 0).then_some(moved),
         }
     }
 }

@@ -1,5 +1,6 @@
-//! Reads mmCIF: the loop `_atom_site` of Protein Data Bank files, lengths in angstrom.
+//! Reads mmCIF: the loop `_atom_site` of Protein Data Bank files, or else ligand definitions; lengths in angstrom.
 
+use super::component::{self, Component, ComponentAtoms};
 use super::connections::{self, Atoms, Connections};
 use super::rows::Rows;
 use super::tokens::{Token, Tokens};
@@ -7,7 +8,6 @@ use crate::alternates::{AlternateAtom, Alternates};
 use crate::{
     Bonds, Cell, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
     frame_reader::FrameReader, lines::Lines, number, schema::Schema, source::Source,
-    undrawn::Undrawn,
 };
 use std::sync::Arc;
 
@@ -26,11 +26,15 @@ pub(in super::super) struct MmCif {
     title: String,
     lengths: [f64; 3],
     angles: [f64; 3],
-    /// Rows of `_struct_conn` before the atoms.
-    bonds: u64,
     /// Tables of bonds, if they are read, and the items of one outside of a loop.
     connections: Option<Connections>,
     items: Items,
+    component_items: Items,
+    /// The atoms of a ligand definition; `None` once the file has had other atoms.
+    component: Option<Component>,
+    component_title: String,
+    /// True after a frame of a ligand definition.
+    is_library: bool,
 }
 
 /// Items of a table with one row.
@@ -38,8 +42,6 @@ pub(in super::super) struct MmCif {
 struct Items {
     names: Vec<String>,
     values: Vec<Vec<u8>>,
-    /// The number and text of the last line.
-    line: (usize, Vec<u8>),
 }
 
 /// The frame that a model is read into.
@@ -116,15 +118,20 @@ impl MmCif {
             title: String::new(),
             lengths: [0.0; 3],
             angles: [0.0; 3],
-            bonds: 0,
             connections: options.reads_bonds().then(Connections::default),
             items: Items::default(),
+            component_items: Items::default(),
+            component: Some(Component::default()),
+            component_title: String::new(),
+            is_library: false,
         }
     }
 
-    /// Reads up to the atoms; `None` if there are none.
+    /// Reads up to the atoms; `None` if there are none, or at the end of a ligand definition.
     fn find(&mut self) -> Result<Option<Sites>, FileError> {
-        while let Some(token) = self.tokens.next()? {
+        loop {
+            let has_component = self.has_component();
+            let Some(token) = self.tokens.next()? else { return Ok(None) };
             match token {
                 Token::Loop => {
                     if let Some(sites) = self.open()? {
@@ -135,14 +142,19 @@ impl MmCif {
                     let tag = tag.to_owned();
                     self.item(&tag)?;
                 }
+                Token::Block if has_component => {
+                    self.tokens.back();
+                    return Ok(None);
+                }
                 Token::Block => {
                     self.items = Items::default();
+                    self.component_items = Items::default();
+                    self.component_title.clear();
                     self.connections.iter_mut().for_each(|own| *own = Connections::default());
                 }
                 Token::Value(_) => (),
             }
         }
-        Ok(None)
     }
 
     /// Reads a tag and its value.
@@ -153,13 +165,20 @@ impl MmCif {
         };
         let axis = |letters: [&str; 3]| letters.iter().position(|letter| tag.ends_with(letter));
         let number = || number::parse(value).unwrap_or(0.0);
-        if self.connections.is_some() && connections::is_of(tag, connections::CONNECTIONS) {
-            self.items.names.push(tag[connections::CONNECTIONS.len()..].to_owned());
-            self.items.values.push(value.to_vec());
-            let line = self.tokens.line();
-            self.items.line = (line.number_in_file(), line.bytes.to_vec());
-        } else if tag == "_struct_conn.id" {
-            self.bonds += 1;
+        let bonds = [
+            (connections::CONNECTIONS, &mut self.items),
+            (connections::COMPONENT_BONDS, &mut self.component_items),
+        ];
+        let mut bonds = bonds.into_iter().filter(|(prefix, _)| connections::is_of(tag, prefix));
+        if let Some((prefix, items)) = bonds.next().filter(|_| self.connections.is_some()) {
+            items.names.push(tag[prefix.len()..].to_owned());
+            items.values.push(value.to_vec());
+        } else if let Some(component) = &mut self.component
+            && connections::is_of(tag, component::ATOMS)
+        {
+            component.push_item(&tag[component::ATOMS.len()..], value);
+        } else if tag == "_chem_comp.name" {
+            self.component_title = String::from_utf8_lossy(value).trim().to_owned();
         } else if tag == "_struct.title" {
             self.title = String::from_utf8_lossy(value).trim().to_owned();
         } else if let Some(edge) = axis(["_cell.length_a", "_cell.length_b", "_cell.length_c"]) {
@@ -189,13 +208,22 @@ impl MmCif {
                 && (is_of(connections::CONNECTIONS) || is_of(connections::COMPONENT_BONDS))
             {
                 connections.read(&mut self.tokens, &tags)?;
-            } else if is_of(connections::CONNECTIONS) {
-                self.bonds += Rows::count(&mut self.tokens, tags.len())?;
+            } else if let Some(component) = &mut self.component
+                && is_of(component::ATOMS)
+            {
+                let prefix = component::ATOMS.len();
+                let names = tags.iter().map(|tag| tag.get(prefix..).unwrap_or(tag).to_owned());
+                component.set_names(names.collect());
+                let mut rows = Rows::new(tags.len());
+                while rows.read(&mut self.tokens)? {
+                    component.push(&rows);
+                }
             }
             return Ok(None);
         }
         let names: Vec<String> =
             tags.iter().map(|tag| tag.get(SITE.len()..).unwrap_or(tag).to_owned()).collect();
+        self.component = None;
         let model = names.iter().position(|name| name == "pdbx_PDB_model_num");
         let alternates = AlternateColumns::new(&names);
         let rows = Rows::new(names.len());
@@ -224,7 +252,7 @@ impl MmCif {
                 alternates.add(builder.frame.len(), atom);
             }
             if let Some(atoms) = atoms {
-                atoms.add(builder.frame.len() as u32, &sites.rows);
+                atoms.add(&sites.rows);
             }
             builder.row(&self.tokens.line(), sites.rows.fields())?;
         }
@@ -239,14 +267,54 @@ impl MmCif {
         frame: &mut ParticleFrame,
     ) -> Result<Option<Bonds>, FileError> {
         let Some(connections) = &mut self.connections else { return Ok(None) };
-        if self.sites.is_none() {
+        if self.sites.is_none() && self.component.is_none() {
             connections::read_rest(&mut self.tokens, connections)?;
         }
-        let Items { names, values, line } = std::mem::take(&mut self.items);
+        let Items { names, values } = std::mem::take(&mut self.items);
         if !names.is_empty() {
-            connections.add(&names, &values, line);
+            connections.add(&names, &values);
         }
+        let Items { names, values } = std::mem::take(&mut self.component_items);
+        connections.add_component(&names, &values);
         connections.bonds(self.tokens.path(), atoms, frame).map(Some)
+    }
+
+    /// Returns whether there are atoms of a ligand definition.
+    fn has_component(&self) -> bool {
+        self.component.as_ref().is_some_and(|component| !component.is_empty())
+    }
+
+    /// Takes the ligand definition of the block that ended.
+    fn take_component(&mut self) -> Option<Component> {
+        self.is_library |= self.has_component();
+        self.component.as_mut().map(std::mem::take).filter(|component| !component.is_empty())
+    }
+
+    /// Returns the frame of a ligand definition.
+    fn component(&mut self, component: Component) -> Result<ParticleFrame, FileError> {
+        let fault = |message: String| FileError::whole_file(self.tokens.path(), message);
+        let title = std::mem::take(&mut self.component_title);
+        let Some(ComponentAtoms { names, rows, nowhere }) = component.atoms() else {
+            let frame = ParticleFrame { title, format: Format::MmCif, ..ParticleFrame::default() };
+            return Ok(frame);
+        };
+        let mut atoms = self.connections.is_some().then(|| Atoms::new(&names));
+        let schema = Schema::new(names, &self.options).map_err(fault)?;
+        let mut builder = Builder::new(self.tokens.path(), Format::MmCif, &Arc::new(schema));
+        for row in &rows {
+            if let Some(atoms) = &mut atoms {
+                atoms.add(row);
+            }
+            builder.row(&self.tokens.line(), row.fields())?;
+        }
+        let mut frame = builder.finish();
+        if nowhere > 0 {
+            frame.warnings.push(format!("{nowhere} atoms without coordinates are left out"));
+        }
+        if let Some(atoms) = &atoms {
+            frame.bonds = self.bonds(atoms, &mut frame)?;
+        }
+        Ok(ParticleFrame { title, unit: LengthUnit::Angstrom, ..frame })
     }
 
     /// Returns whether the reader is in a loop of atoms.
@@ -273,16 +341,16 @@ impl FrameReader for MmCif {
             }
             let mut frame = builder.finish();
             if let Some(atoms) = &atoms {
-                frame.bonds = self.bonds(atoms, &mut frame)?;
+                let bonds = self.bonds(atoms, &mut frame)?;
+                frame.bonds = bonds.map(|bonds| Bonds { partial: true, ..bonds });
             }
             alternates.choose(&mut frame);
-            frame.add_undrawn(Undrawn::Bonds, self.bonds);
             let cell = Cell::of_lengths(self.lengths, self.angles);
             let cell = cell.filter(|_| self.lengths != [1.0; 3]);
             let (title, unit) = (self.title.clone(), LengthUnit::Angstrom);
             return Ok(Some(ParticleFrame { cell, title, unit, ..frame }));
         }
-        Ok(None)
+        self.take_component().map(|component| self.component(component)).transpose()
     }
 
     fn skip(&mut self) -> Result<bool, FileError> {
@@ -291,10 +359,10 @@ impl FrameReader for MmCif {
                 return Ok(true);
             }
         }
-        Ok(false)
+        Ok(self.take_component().is_some())
     }
 
     fn more(&mut self) -> Result<bool, FileError> {
-        Ok(self.sites.is_some())
+        Ok(self.is_library && (self.is_open()? || self.has_component()) || self.sites.is_some())
     }
 }

@@ -5,6 +5,7 @@
 //! (CIF)", Acta Crystallographica A47, 1991.
 
 mod binary;
+mod component;
 mod connections;
 mod crystal;
 mod declared;

@@ -4,6 +4,7 @@ use super::tokens::{Token, Tokens};
 use crate::FileError;
 
 /// Reader of the rows of a loop.
+#[derive(Clone)]
 pub(super) struct Rows {
     columns: usize,
     /// Values of the current row, concatenated, and their end offsets.
@@ -15,6 +16,12 @@ impl Rows {
     /// Creates a reader of rows with `columns` values, at least one.
     pub(super) fn new(columns: usize) -> Self {
         Self { columns, bytes: Vec::new(), ends: Vec::new() }
+    }
+
+    /// Appends a value to the row.
+    pub(super) fn push(&mut self, value: &[u8]) {
+        self.bytes.extend_from_slice(value);
+        self.ends.push(self.bytes.len());
     }
 
     /// Reads the next row. Returns whether there was one.
@@ -32,8 +39,7 @@ impl Rows {
                     .error(format!("a row of {count} values, but there are {columns} columns"));
                 return Err(error.with_help("the file is cut off, or a quote is not closed"));
             };
-            self.bytes.extend_from_slice(value);
-            self.ends.push(self.bytes.len());
+            self.push(value);
         }
         Ok(true)
     }

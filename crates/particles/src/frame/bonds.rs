@@ -18,6 +18,9 @@ pub struct Bonds {
     pub kinds: TextColumn,
     /// True if the file lists only some of the bonds, as PDB and mmCIF do.
     pub partial: bool,
+    /// Number of bonds of the file that are left out, since they end at no particle, until
+    /// [`ParticleFrame::find_bonds`](crate::ParticleFrame::find_bonds) warns of them.
+    pub dangling: u64,
 }
 
 /// A bond: its particles, and the shift of the second one.
@@ -92,7 +95,8 @@ impl Bonds {
         let sorted: Vec<Bond> = bonds.iter().map(|(bond, _)| *bond).collect();
         let mut kinds = std::mem::take(&mut self.kinds);
         kinds.codes.change(RowChange::Pick(&bonds.iter().map(|bond| bond.1).collect::<Vec<u32>>()));
-        *self = Self { kinds, partial: self.partial, ..Self::of_sorted(&sorted) };
+        let (partial, dangling) = (self.partial, self.dangling);
+        *self = Self { kinds, partial, dangling, ..Self::of_sorted(&sorted) };
     }
 
     /// Renumbers the bonds after the particles for which `keep` is false were removed; their bonds are

@@ -120,6 +120,13 @@ impl LengthUnit {
     }
 }
 
+impl Format {
+    /// Returns whether files of this format are those of crystals.
+    pub(crate) fn is_of_crystals(self) -> bool {
+        matches!(self, Self::Cif | Self::Poscar | Self::Xsf | Self::Cfg)
+    }
+}
+
 impl ParticleFrame {
     /// Returns whether the particles are the atoms of a crystal, few enough that its structure can be seen: at most
     /// 10,000 from a file of a format of crystals, of known elements and without radii, in a cell that is periodic in
@@ -127,11 +134,9 @@ impl ParticleFrame {
     pub fn is_crystal(&self) -> bool {
         /// The most atoms.
         const MOST: usize = 10_000;
-        let is_format =
-            matches!(self.format, Format::Cif | Format::Poscar | Format::Xsf | Format::Cfg);
         let is_periodic = self.cell.as_ref().is_some_and(|cell| cell.periodic == [true; 3]);
         let mut kinds = self.kinds.table.iter();
-        is_format
+        self.format.is_of_crystals()
             && is_periodic
             && (1..=MOST).contains(&self.len())
             && self.radius.is_empty()

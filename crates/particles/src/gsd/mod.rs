@@ -243,14 +243,7 @@ impl Gsd {
                     ends.get(end).copied().filter(|row| (0.0..particles as f64).contains(row));
                 row.map(|row| row as u32)
             };
-            let (Some(first), Some(second)) = (row(0), row(1)) else {
-                let frame = self.next;
-                let message = format!(
-                    "bond {bond} of frame {frame} is of particles {ends:?}, but there are {particles}"
-                );
-                let help = "write its chunk bonds/group again, or read no bonds of it";
-                return Err(self.fault(message).with_help(help));
-            };
+            let Some([first, second]) = bonds.ends([row(0), row(1)]) else { continue };
             let kind = kinds.get(bond).copied().unwrap_or(0.0) as usize;
             let name = types.get(kind).map_or("", String::as_str);
             bonds.push_named(&self.path, (first, second, [0; 3]), name.as_bytes())?;
@@ -262,8 +255,6 @@ impl Gsd {
     fn bonds_and_shapes(&mut self, frame: &mut ParticleFrame) -> Result<(), FileError> {
         if self.options.reads_bonds() {
             frame.bonds = Some(self.bonds(frame.len())?);
-        } else {
-            frame.add_undrawn(Undrawn::Bonds, self.number("bonds/N")?.unwrap_or(0.0) as u64);
         }
         let shapes = self.texts("particles/type_shapes")?.unwrap_or_default();
         let shapes: Vec<TypeShape> = shapes.iter().map(|shape| TypeShape::of(shape)).collect();

@@ -121,8 +121,11 @@ impl Data {
                 let help = "a row is a number, a type and the numbers of two atoms";
                 return Err(line.whole("not the columns of a bond").with_help(help));
             };
-            let bond = (ids.row(&line, first)?, ids.row(&line, second)?, [0; 3]);
-            bonds.push_named(&path, bond, kind)?;
+            if let Some([first, second]) =
+                bonds.ends([ids.row(&line, first)?, ids.row(&line, second)?])
+            {
+                bonds.push_named(&path, (first, second, [0; 3]), kind)?;
+            }
         }
         Ok(bonds.finish())
     }
@@ -141,10 +144,11 @@ impl Data {
                 let error = || line.whole("not the columns of an ellipsoid").with_help(help);
                 fields.next().ok_or_else(error)
             };
-            let row = ids.row_of(&line, field()?, |line, field| {
-                let name = String::from_utf8_lossy(field).into_owned();
+            let number = field()?;
+            let row = ids.row(&line, number)?.ok_or_else(|| {
+                let name = String::from_utf8_lossy(number);
                 let message = format!("an ellipsoid of atom {name}, but there is no such atom");
-                line.error_at(field, message).with_help("remove the row, or add the atom")
+                line.error_at(number, message).with_help("remove the row, or add the atom")
             })?;
             for column in &mut values {
                 column[row as usize] = line.number(field()?)?;

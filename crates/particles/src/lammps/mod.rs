@@ -15,7 +15,6 @@ use crate::{LengthUnit, undrawn::Undrawn};
 /// Returns the kind of object that a section of a data file lists, if it is not drawn.
 fn undrawn(section: &str) -> Option<Undrawn> {
     match section {
-        "Bonds" => Some(Undrawn::Bonds),
         "Ellipsoids" | "Lines" | "Triangles" | "Bodies" => Some(Undrawn::Shapes),
         _ => None,
     }
