@@ -4,8 +4,8 @@ use crate::bonds::{Listed, Numbering};
 use crate::lines::{Line, Lines};
 use crate::schema::{Schema, Slot};
 use crate::{
-    Cell, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
-    fields::Fields, frame_reader::FrameReader, number, source::Source,
+    Cell, FileError, Format, Kind, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
+    fields::Fields, frame_reader::FrameReader, naming, number, source::Source,
 };
 use std::path::Path;
 use std::sync::Arc;
@@ -17,8 +17,10 @@ const NAMES: [&str; 9] =
 /// Columns of texts, even if the texts look like numbers.
 const TEXTS: [&str; 5] = ["number", "name", "atom_type", "residue_number", "residue"];
 
-/// Index of the type of an atom: an element, and its hybridization after a point.
+/// Indices of the name of an atom, its type and its residue.
+const NAME: usize = 1;
 const TYPE: usize = 5;
+const RESIDUE: usize = 7;
 
 /// The beginning of a line with the name of a section.
 const SECTION: &[u8] = b"@<TRIPOS>";
@@ -68,6 +70,13 @@ fn add_bond(
         Some([first, second]) => bonds.push_named(path, (first, second, [0; 3]), kind),
         None => Ok(()),
     }
+}
+
+/// Returns the type for the type, name and residue of an atom, separated by blanks.
+fn kind(key: &str) -> Kind {
+    let mut parts = key.split(' ');
+    let [kind, name, residue] = [(); 3].map(|()| parts.next().unwrap_or_default());
+    naming::of_sybyl(kind, name, residue)
 }
 
 /// Returns a line up to a comment: a `#` at its beginning or after a blank.
@@ -126,8 +135,7 @@ impl FrameReader for Mol2 {
                 row.resize(NAMES.len().max(row.len()), b"");
                 builder.row(&line, row.iter().copied())?;
                 if !has_kind {
-                    let kind = row[TYPE];
-                    builder.kind(kind.split(|&byte| byte == b'.').next().unwrap_or(kind));
+                    builder.kind_of(&[row[TYPE], row[NAME], row[RESIDUE]].join(&b' '), kind);
                 }
             } else if inside == b"BOND" && self.reads_bonds && !line.is_blank() {
                 let numbering = numbering.get_or_insert_with(|| Numbering::of(&numbers));

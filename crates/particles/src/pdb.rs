@@ -7,7 +7,7 @@
 
 use crate::alternates::{AlternateAtom, Alternates};
 use crate::bonds::Listed;
-use crate::element::{is_virtual_site, of_aligned_name};
+use crate::element::{is_virtual_site, of_aligned_name, of_autodock_type};
 use crate::lines::{Line, Lines};
 use crate::schema::{Naming, Schema, Slot};
 use crate::source::{Source, is_standard_input};
@@ -354,20 +354,35 @@ fn alternate(line: &[u8]) -> AlternateAtom<'_> {
     }
 }
 
-/// Returns the unparsed fields that define the type of an atom: name, residue and element.
-fn key(line: &[u8]) -> [u8; 10] {
-    let mut key = [b' '; 10];
-    for (to, from) in (12..16).chain(17..21).chain(76..78).enumerate() {
+/// Returns the unparsed fields that define the type of an atom: name, residue and element, or its type in PDBQT, which is
+/// one column further, after a `Q`.
+fn key(line: &[u8]) -> [u8; 11] {
+    let mut key = [b' '; 11];
+    let is_pdbqt = is_pdbqt(line);
+    let symbol = if is_pdbqt { 77..79 } else { 76..78 };
+    for (to, from) in (12..16).chain(17..21).chain(symbol).enumerate() {
         key[to] = line.get(from).copied().unwrap_or(b' ');
     }
+    if is_pdbqt {
+        key[10] = b'Q';
+    }
     key
+}
+
+/// Returns whether a row is that of PDBQT of `AutoDock`, with a charge of three decimals in columns 71 to 76 and a type in
+/// columns 78 and 79 (<https://autodock.scripps.edu>).
+fn is_pdbqt(line: &[u8]) -> bool {
+    let charge = || number::parse(fixed(line, 70, 76)).is_some();
+    line.get(72) == Some(&b'.') && line.get(76) == Some(&b' ') && line.len() > 77 && charge()
 }
 
 fn kind(key: &str) -> Kind {
     let part = |start: usize, end: usize| key.get(start..end).unwrap_or_default();
     let (name, residue, symbol) = (part(0, 4), part(4, 8).trim(), part(8, 10).trim());
     let virtual_site = is_virtual_site(name.trim(), residue);
-    let element = Element::from_symbol(symbol).or_else(|| of_aligned_name(name, residue));
+    let by_symbol =
+        if key.ends_with('Q') { of_autodock_type(symbol) } else { Element::from_symbol(symbol) };
+    let element = by_symbol.or_else(|| of_aligned_name(name, residue));
     let element = element.filter(|_| !virtual_site);
     Kind { name: name.trim().to_owned(), element, virtual_site }
 }

@@ -5,9 +5,8 @@ use crate::bonds::{Listed, row_from_one};
 use crate::lines::{Line, Lines};
 use crate::schema::{Naming, Schema, Slot};
 use crate::{
-    Bonds, Element, FileError, Format, Kind, ParticleFrame, ReadOptions, builder::Builder,
-    element::is_virtual_site, fields::Fields, frame_reader::FrameReader, naming, number,
-    source::Source,
+    Bonds, FileError, Format, Kind, ParticleFrame, ReadOptions, builder::Builder, fields::Fields,
+    frame_reader::FrameReader, naming, naming::Weighing, number, source::Source,
 };
 use std::sync::Arc;
 
@@ -119,14 +118,15 @@ fn fields<'l>(line: &Line<'l>) -> Result<[&'l [u8]; COLUMNS], FileError> {
 }
 
 /// Returns the type for the mass, name and residue of an atom, separated by blanks.
-fn kind(key: &str) -> Kind {
+fn kind(key: &str, weighing: &mut Weighing) -> Kind {
     let mut parts = key.split(' ');
     let mut part = || parts.next().unwrap_or_default();
     let (mass, name, residue) = (part(), part(), part());
-    let by_mass = number::parse(mass.as_bytes()).and_then(Element::from_mass);
     let named = naming::of_atom(name, residue);
-    let element = by_mass.filter(|_| !is_virtual_site(name, residue)).or(named.element);
-    Kind { element, ..named }
+    match number::parse(mass.as_bytes()) {
+        Some(mass) => weighing.weigh(named, name, mass),
+        None => named,
+    }
 }
 
 impl FrameReader for Psf {
@@ -139,16 +139,19 @@ impl FrameReader for Psf {
         let mut builder = Builder::new(self.lines.path(), Format::Psf, &schema);
         builder.declare(&TEXTS, &["charge", "mass"]);
         let has_kind = schema.slots.contains(&Slot::Kind);
+        let mut weighing = Weighing::default();
         for atom in 0..count {
             let line = self.lines.row(atom, count, "atoms", "the file is cut off")?;
             let fields = fields(&line)?;
             let positions: [&[u8]; 3] = [b"nan"; 3];
             builder.row(&line, fields.into_iter().chain(positions))?;
             if !has_kind {
-                builder.kind_of(&[fields[7], fields[4], fields[3]].join(&b' '), kind);
+                let key = [fields[7], fields[4], fields[3]].join(&b' ');
+                builder.kind_of(&key, |key| kind(key, &mut weighing));
             }
         }
         let mut frame = builder.finish();
+        weighing.warn(&mut frame);
         if self.reads_bonds {
             frame.bonds = self.bonds(frame.len())?;
         }

@@ -27,6 +27,8 @@ pub(crate) enum Naming {
     Symbols,
     /// Element symbols if all names are; numbers are not elements.
     Types,
+    /// Element symbols, or symbols of groups such as `OH2`, as in CIF.
+    Groups,
     /// Atom names in molecules.
     Names,
 }

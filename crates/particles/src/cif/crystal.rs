@@ -5,13 +5,18 @@ use super::declared::{Contents, Declared, Resolved};
 use super::geometry::{self, Geometry, ListedBond, NOWHERE};
 use super::hall::MOST;
 use super::occupancy::{Occupancies, Positions};
-use super::rows::Rows;
+use super::rows::{Rows, add_dummies, is_dummy};
 use super::symmetry::{Operation, images};
 use super::tokens::{Token, Tokens};
 use crate::{
     Bonds, Cell, Element, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, Rgb, Role,
-    builder::Builder, frame_reader::FrameReader, lines::Lines, memory, number, schema::Schema,
-    source::Source, undrawn::Undrawn,
+    builder::Builder,
+    frame_reader::FrameReader,
+    lines::Lines,
+    memory, number,
+    schema::{Naming, Schema},
+    source::Source,
+    undrawn::Undrawn,
 };
 use glam::DVec3;
 use memchr::memmem;
@@ -27,6 +32,9 @@ const SITE: &str = "_atom_site_";
 /// Columns of fractional coordinates.
 const FRACTIONAL: [(Role, &str); 3] =
     [(Role::X, "fract_x"), (Role::Y, "fract_y"), (Role::Z, "fract_z")];
+
+/// Column that tells dummy sites.
+const DUMMY: &str = "_atom_site_calc_flag";
 
 /// Columns of numbers, some of which may be unknown.
 const NUMBERS: [&str; 3] = ["occupancy", "U_iso_or_equiv", "B_iso_or_equiv"];
@@ -205,8 +213,13 @@ impl Crystal {
             return Err(self.tokens.error(message));
         }
         let mut occupancies = Occupancies::new(&names);
-        let schema = Schema::with_roles(names, &self.options, &known)
+        let mut schema = Schema::with_roles(names, &self.options, &known)
             .map_err(|message| self.tokens.error(message))?;
+        if has_symbols && schema.naming == Naming::Symbols {
+            schema.naming = Naming::Groups;
+        }
+        let calculated = tags.iter().position(|tag| plain(tag) == DUMMY);
+        let mut dummies = 0_u64;
         let mut builder = Builder::new(self.tokens.path(), Format::Cif, &Arc::new(schema));
         builder.declare(&["label"], &NUMBERS);
         let (mut rows, mut nowhere) = (Rows::new(tags.len()), 0_u64);
@@ -216,7 +229,10 @@ impl Crystal {
         while rows.read(&mut self.tokens)? {
             let unknown = |column: &usize| matches!(rows.field(*column), b"." | b"?");
             let text = label.map(|label| rows.field(label).to_vec());
-            if places.iter().flatten().any(unknown) {
+            if is_dummy(&rows, calculated) {
+                labels.extend(text.map(|text| (text, NOWHERE)));
+                dummies += 1;
+            } else if places.iter().flatten().any(unknown) {
                 labels.extend(text.map(|text| (text, NOWHERE)));
                 nowhere += 1;
             } else {
@@ -231,6 +247,7 @@ impl Crystal {
             builder.frame.warnings.push(warning);
         }
         let mut frame = builder.finish();
+        add_dummies(&mut frame, dummies);
         if !has_symbols {
             for kind in &mut frame.kinds.table {
                 kind.element = kind.element.or_else(|| element(&kind.name));
@@ -251,6 +268,7 @@ impl Crystal {
             let message = format!("there is no cell with edges {lengths:?} and angles {angles:?}");
             fault(message).with_help("a crystal needs _cell_length_a, _b and _c, and its angles")
         })?;
+        leave_out_vacant(&mut atoms, &mut occupancies, &mut labels);
         keep_main_groups(&mut atoms, &mut occupancies, &mut labels);
         let positions: Vec<DVec3> = (0..atoms.len()).map(|row| atoms.position(row)).collect();
         let contents = Contents { cell: &cell, positions: &positions };
@@ -297,17 +315,17 @@ impl FrameReader for Crystal {
     }
 }
 
-/// Removes the atoms of all disorder groups but the main ones.
-fn keep_main_groups(
+/// Removes the atoms that are not to be kept. Returns their number.
+fn keep_atoms(
+    keep: &[bool],
     atoms: &mut ParticleFrame,
     occupancies: &mut Occupancies,
     labels: &mut HashMap<Vec<u8>, u32>,
-) {
-    let keep = occupancies.main_groups();
-    let lesser = keep.iter().filter(|keep| !**keep).count();
-    if lesser > 0 {
-        atoms.retain(&keep);
-        occupancies.retain(&keep);
+) -> usize {
+    let others = keep.iter().filter(|keep| !**keep).count();
+    if others > 0 {
+        atoms.retain(keep);
+        occupancies.retain(keep);
         let mut next = 0..;
         let places: Vec<u32> = keep
             .iter()
@@ -316,6 +334,34 @@ fn keep_main_groups(
         for row in labels.values_mut().filter(|row| **row != NOWHERE) {
             *row = places[*row as usize];
         }
+    }
+    others
+}
+
+/// Removes the sites without an atom: those of occupancy 0, unless all are.
+fn leave_out_vacant(
+    atoms: &mut ParticleFrame,
+    occupancies: &mut Occupancies,
+    labels: &mut HashMap<Vec<u8>, u32>,
+) {
+    let keep = occupancies.occupied();
+    if keep.contains(&true) {
+        let vacant = keep_atoms(&keep, atoms, occupancies, labels);
+        if vacant > 0 {
+            let count = count_text(vacant, "site of occupancy 0 is", "sites of occupancy 0 are");
+            atoms.warnings.push(format!("{count} left out"));
+        }
+    }
+}
+
+/// Removes the atoms of all disorder groups but the main ones.
+fn keep_main_groups(
+    atoms: &mut ParticleFrame,
+    occupancies: &mut Occupancies,
+    labels: &mut HashMap<Vec<u8>, u32>,
+) {
+    let lesser = keep_atoms(&occupancies.main_groups(), atoms, occupancies, labels);
+    if lesser > 0 {
         atoms.warnings.push(format!(
             "{} left out: of each disorder, the group with the greatest occupancy is drawn",
             count_text(lesser, "listed atom is", "listed atoms are"),

@@ -2,7 +2,7 @@
 
 use super::component::{self, Component, ComponentAtoms};
 use super::connections::{self, Atoms, Connections};
-use super::rows::Rows;
+use super::rows::{Rows, add_dummies, is_dummy};
 use super::tokens::{Token, Tokens};
 use crate::alternates::{AlternateAtom, Alternates};
 use crate::{
@@ -50,6 +50,8 @@ struct Model<'m> {
     alternates: &'m mut Alternates,
     /// Atoms by their names, if bonds are read.
     atoms: Option<&'m mut Atoms>,
+    /// Number of dummy sites, which are no atoms.
+    dummies: &'m mut u64,
 }
 
 /// The loop that is being read.
@@ -57,6 +59,8 @@ struct Sites {
     schema: Arc<Schema>,
     /// Column of the model number.
     model: Option<usize>,
+    /// Column that tells dummy sites, as [`is_dummy`] does.
+    calculated: Option<usize>,
     alternates: AlternateColumns,
     rows: Rows,
     /// True if the current row belongs to the next frame.
@@ -225,13 +229,15 @@ impl MmCif {
             tags.iter().map(|tag| tag.get(SITE.len()..).unwrap_or(tag).to_owned()).collect();
         self.component = None;
         let model = names.iter().position(|name| name == "pdbx_PDB_model_num");
+        let calculated = names.iter().position(|name| name == "calc_flag");
         let alternates = AlternateColumns::new(&names);
         let rows = Rows::new(names.len());
         let schema = Schema::new(names, &self.options).map_err(|message| {
             let help = "atoms of mmCIF have _atom_site.Cartn_x, Cartn_y and Cartn_z";
             self.tokens.error(message).with_help(help)
         })?;
-        Ok(Some(Sites { schema: Arc::new(schema), model, alternates, rows, pending: false }))
+        let schema = Arc::new(schema);
+        Ok(Some(Sites { schema, model, calculated, alternates, rows, pending: false }))
     }
 
     /// Reads the atoms of the next model into a builder, or skips them. Returns whether there are any.
@@ -247,7 +253,11 @@ impl MmCif {
             if model.is_none() {
                 model = Some(own.to_vec());
             }
-            let Some(Model { builder, alternates, atoms }) = &mut taken else { continue };
+            let Some(Model { builder, alternates, atoms, dummies }) = &mut taken else { continue };
+            if is_dummy(&sites.rows, sites.calculated) {
+                **dummies += 1;
+                continue;
+            }
             if let Some(atom) = sites.alternates.atom(&sites.rows) {
                 alternates.add(builder.frame.len(), atom);
             }
@@ -335,11 +345,18 @@ impl FrameReader for MmCif {
             let mut alternates = Alternates::default();
             let mut atoms = self.connections.is_some().then(|| Atoms::new(&schema.names));
             let (own, atoms_now) = (&mut builder, atoms.as_mut());
-            let model = Model { builder: own, alternates: &mut alternates, atoms: atoms_now };
+            let (alternates_now, mut dummies) = (&mut alternates, 0);
+            let model = Model {
+                builder: own,
+                alternates: alternates_now,
+                atoms: atoms_now,
+                dummies: &mut dummies,
+            };
             if !self.model(Some(model))? {
                 continue;
             }
             let mut frame = builder.finish();
+            add_dummies(&mut frame, dummies);
             if let Some(atoms) = &atoms {
                 let bonds = self.bonds(atoms, &mut frame)?;
                 frame.bonds = bonds.map(|bonds| Bonds { partial: true, ..bonds });

@@ -74,6 +74,11 @@ impl Occupancies {
         self.groups.push(Group { assembly, name });
     }
 
+    /// Returns for each listed atom whether its site is occupied, or may be.
+    pub(super) fn occupied(&self) -> Vec<bool> {
+        self.values.iter().map(|value| *value != 0.0).collect()
+    }
+
     /// Removes the atoms that are not kept.
     pub(super) fn retain(&mut self, keep: &[bool]) {
         let mut kept = keep.iter();

@@ -1,7 +1,7 @@
 //! The rows of a loop of a CIF file.
 
 use super::tokens::{Token, Tokens};
-use crate::FileError;
+use crate::{FileError, ParticleFrame};
 
 /// Reader of the rows of a loop.
 #[derive(Clone)]
@@ -63,4 +63,19 @@ impl Rows {
     pub(super) fn fields(&self) -> impl Iterator<Item = &[u8]> {
         (0..self.ends.len()).map(|column| self.field(column))
     }
+}
+
+/// Returns whether a row of atoms is a dummy site, such as the center of a ring, by its column of calculated positions.
+pub(super) fn is_dummy(rows: &Rows, calculated: Option<usize>) -> bool {
+    calculated.is_some_and(|column| rows.field(column).eq_ignore_ascii_case(b"dum"))
+}
+
+/// Adds a warning that dummy sites are left out, if there are any.
+pub(super) fn add_dummies(frame: &mut ParticleFrame, dummies: u64) {
+    let text = match dummies {
+        0 => return,
+        1 => "1 dummy site is left out".to_owned(),
+        _ => format!("{dummies} dummy sites are left out"),
+    };
+    frame.warnings.push(text);
 }

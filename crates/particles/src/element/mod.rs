@@ -3,7 +3,9 @@
 mod names;
 mod tables;
 
-pub(super) use names::{is_virtual_site, of_aligned_name, of_atom_name};
+pub(super) use names::{
+    is_virtual_site, of_aligned_name, of_atom_name, of_autodock_type, of_group,
+};
 use tables::{COVALENT, MASSES, SYMBOLS, VAN_DER_WAALS};
 
 /// A chemical element, by its atomic number.
@@ -12,6 +14,15 @@ pub struct Element(u8);
 
 /// Tolerance of masses in daltons: files round them, and some have 1 for hydrogen.
 const MASS_TOLERANCE: f64 = 0.06;
+
+/// Maximum mass in daltons that simulations with long steps move to a hydrogen from the atom that it is bonded to (Hopkins
+/// et al., "Long-time-step molecular dynamics through hydrogen mass repartitioning", Journal of Chemical Theory and
+/// Computation 2015), and number of hydrogens that may take it from an atom.
+const MOVED: f64 = 3.1;
+const TAKERS: f64 = 3.0;
+
+/// Maximum mass in daltons that a united atom has of its hydrogens.
+const UNITED: f64 = 4.1;
 
 impl Element {
     /// Returns the element with this atomic number, 1 to 118.
@@ -31,6 +42,18 @@ impl Element {
         let distance = |row: &usize| (MASSES[*row] - mass).abs();
         let row = (0..MASSES.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
         (distance(&row) <= MASS_TOLERANCE).then(|| Self::from_number(row as u64 + 1)).flatten()
+    }
+
+    /// Returns whether an atom of this element may have this mass in a simulation: masses of hydrogens and of atoms with
+    /// hydrogens may be repartitioned, or those of united atoms.
+    pub(crate) fn may_have_mass(self, mass: f64) -> bool {
+        let Some(more) = MASSES.get(self.row()).map(|own| mass - own) else { return false };
+        let range = match self.symbol() {
+            "H" => -MASS_TOLERANCE..=MOVED,
+            "C" | "N" | "O" | "Si" | "P" | "S" => -TAKERS * MOVED..=UNITED,
+            _ => -MASS_TOLERANCE..=MASS_TOLERANCE,
+        };
+        range.contains(&more)
     }
 
     /// Returns the element of a label: an atomic number, or a symbol in any case, optionally followed by a
@@ -123,6 +146,23 @@ mod tests {
         }
         for mass in [0.0, -1.0, 72.0, 500.0, f64::NAN, f64::INFINITY] {
             assert_eq!(Element::from_mass(mass), None, "{mass}");
+        }
+    }
+
+    #[test]
+    fn repartitioned_masses_are_those_of_their_elements() {
+        let may = |symbol: &str, mass: f64| {
+            Element::from_symbol(symbol).is_some_and(|element| element.may_have_mass(mass))
+        };
+        for (symbol, mass) in
+            [("H", 3.024), ("H", 4.032), ("C", 9.995), ("C", 5.963), ("N", 11.991), ("C", 15.035)]
+        {
+            assert!(may(symbol, mass), "{symbol} of {mass}");
+        }
+        for (symbol, mass) in
+            [("H", 12.011), ("C", 40.078), ("N", 22.99), ("O", 0.0), ("K", 40.078), ("Es", 252.0)]
+        {
+            assert!(!may(symbol, mass), "{symbol} of {mass}");
         }
     }
 }

@@ -31,6 +31,24 @@ const IONS: [(&str, &str); 8] = [
     ("BAR", "Ba"),
 ];
 
+/// Atom types of `AutoDock` that are no symbols of their elements (`AD4.1_bound.dat`): acceptors of hydrogen bonds, aromatic
+/// carbon, hydrogens of donors, carbons where rings are closed, and water.
+const AUTODOCK: [(&str, &str); 13] = [
+    ("A", "C"),
+    ("G", "C"),
+    ("GA", "C"),
+    ("J", "C"),
+    ("Q", "C"),
+    ("HD", "H"),
+    ("HS", "H"),
+    ("NA", "N"),
+    ("NS", "N"),
+    ("OA", "O"),
+    ("OS", "O"),
+    ("SA", "S"),
+    ("W", "O"),
+];
+
 /// Two-letter elements in atom names outside of [`STANDARD`] residues, although their first letter is
 /// an element too.
 const LONG: [&str; 7] = ["CL", "BR", "SI", "SE", "FE", "CU", "PT"];
@@ -66,9 +84,28 @@ pub(in super::super) fn of_aligned_name(aligned: &str, residue: &str) -> Option<
     // `HG11` fills all columns, but is not mercury.
     let full = name.len() == 4 && name.starts_with('H');
     if !full && !is_one_of(residue, &STANDARD) {
-        return Element::from_symbol(symbol).or_else(|| of_atom_name(name, residue));
+        let letters = letters(name);
+        let ion = if residue.eq_ignore_ascii_case(letters) { ion(letters, residue) } else { None };
+        return ion
+            .or_else(|| Element::from_symbol(symbol))
+            .or_else(|| of_atom_name(name, residue));
     }
     of_atom_name(name, residue)
+}
+
+/// Returns the element of an atom type of `AutoDock`, as PDBQT has them; `None` if it is none.
+pub(in super::super) fn of_autodock_type(name: &str) -> Option<Element> {
+    let own = AUTODOCK.iter().find(|(own, _)| own.eq_ignore_ascii_case(name));
+    Element::from_symbol(own.map_or(name, |(_, symbol)| symbol))
+}
+
+/// Returns the element whose symbol, with its capitals, begins the symbol of a group or ion, such as `OH2` and
+/// `O2-(H2O)`.
+pub(in super::super) fn of_group(name: &str) -> Option<Element> {
+    let is_end = |end: usize| !name[end..].starts_with(|letter: char| letter.is_ascii_lowercase());
+    let symbols = (1..=2).rev().filter_map(|end| name.get(..end).filter(|_| is_end(end)));
+    let found = symbols.filter_map(|symbol| Some((symbol, Element::from_symbol(symbol)?)));
+    { found }.find(|(symbol, element)| element.symbol() == *symbol).map(|(_, element)| element)
 }
 
 fn letters(name: &str) -> &str {
@@ -149,6 +186,14 @@ mod tests {
             (" CA ", "GLY", "C"),
             (" CA ", "LIG", "C"),
             ("CA  ", "LIG", "Ca"),
+            ("POT ", "POT", "K"),
+            ("CES ", "CES", "Cs"),
+            ("SOD ", "SOD", "Na"),
+            ("CLA ", "CLA", "Cl"),
+            ("CAL ", "CAL", "Ca"),
+            ("BAR ", "BAR", "Ba"),
+            ("ZN  ", "ZN2", "Zn"),
+            ("NA  ", "NA+", "Na"),
             ("CA  ", "GLY", "C"),
             ("HG21", "XYZ", "H"),
             ("HG  ", "XYZ", "Hg"),
@@ -159,6 +204,31 @@ mod tests {
             ("1HB ", "LIG", "H"),
         ] {
             assert_eq!(symbol(of_aligned_name(name, residue)), expected, "{name:?} of {residue}");
+        }
+    }
+
+    #[test]
+    fn groups_and_types_of_autodock_have_elements() {
+        for (name, expected) in [
+            ("OH2", "O"),
+            ("O2-(H2O)", "O"),
+            ("NH4+", "N"),
+            ("Vac", "-"),
+            ("Cg", "-"),
+            ("\u{e9}", "-"),
+        ] {
+            assert_eq!(symbol(of_group(name)), expected, "{name}");
+        }
+        for (name, expected) in [
+            ("A", "C"),
+            ("OA", "O"),
+            ("NA", "N"),
+            ("HD", "H"),
+            ("CL", "Cl"),
+            ("Fe", "Fe"),
+            ("X", "-"),
+        ] {
+            assert_eq!(symbol(of_autodock_type(name)), expected, "{name}");
         }
     }
 

@@ -6,13 +6,15 @@ use super::unit;
 use super::velocities::{self, Velocities};
 use crate::bonds::{Listed, Numbering};
 use crate::lines::{Line, Lines};
-use crate::naming::{drop_uncertain_elements, kind};
+use crate::naming::{Weighing, drop_uncertain_elements, kind, of_atom};
 use crate::schema::{Naming, Schema};
 use crate::{
-    Bonds, Cell, Element, FileError, Format, LengthUnit, NumberColumn, ParticleFrame, ReadOptions,
-    Role, builder::Builder, fields::Fields, frame_reader::FrameReader, number, source::Source,
+    Bonds, Cell, Element, FileError, Format, Kind, LengthUnit, NumberColumn, ParticleFrame,
+    ReadOptions, Role, builder::Builder, fields::Fields, frame_reader::FrameReader, number,
+    source::Source,
 };
 use glam::DVec3;
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -43,7 +45,30 @@ struct Head {
     general: [Option<DVec3>; 4],
     has_box: bool,
     /// Masses of types, by type name.
-    masses: HashMap<String, f64>,
+    masses: HashMap<String, Mass>,
+}
+
+/// The mass of a type.
+struct Mass {
+    mass: f64,
+    /// The first word of the comment beside it, by convention the name of the type.
+    name: String,
+}
+
+impl Mass {
+    /// Returns the element that a name of the type says, if it may have this mass.
+    fn named(&self, name: &str) -> Option<Element> {
+        if number::whole(name.as_bytes()).is_some() {
+            return None;
+        }
+        let by_name = [of_atom(name, "").element, Element::from_label(name)];
+        by_name.into_iter().flatten().find(|element| element.may_have_mass(self.mass))
+    }
+
+    /// Returns whether the mass is a whole number, as in reduced units.
+    fn is_whole(&self) -> bool {
+        self.mass.fract() == 0.0
+    }
 }
 
 impl Data {
@@ -88,8 +113,11 @@ impl Data {
     }
 
     fn masses(&mut self, head: &mut Head) -> Result<(), FileError> {
-        self.pairs(|line, name, mass| {
-            head.masses.insert(name, line.number(mass)?);
+        self.pairs(|line, kind, mass| {
+            let comment = line.bytes.split(|&byte| byte == b'#').nth(1).unwrap_or_default();
+            let name = Fields::blanks(comment).next().map(String::from_utf8_lossy);
+            let name = name.map_or_else(String::new, Cow::into_owned);
+            head.masses.insert(kind, Mass { mass: line.number(mass)?, name });
             Ok(())
         })
     }
@@ -413,30 +441,54 @@ impl Head {
         self.has_box.then(|| tilted(self.low, self.high, self.tilt)).and_then(Cell::checked)
     }
 
-    /// Returns whether all masses are those of elements, and not all are 1, which is the usual mass of
-    /// particles that aren't atoms.
-    fn has_elements(&self) -> bool {
-        !self.masses.is_empty()
-            && self.masses.values().all(|&mass| Element::from_mass(mass).is_some())
-            && self.masses.values().any(|&mass| mass > 2.5)
+    /// Returns the types with the elements of their names and masses. None have one if all masses of elements are 1, which is
+    /// the usual mass of particles that aren't atoms, or small whole numbers without names, as in reduced units; then
+    /// a warning is added if charges don't tell.
+    fn weighed(&self, frame: &mut ParticleFrame, weighing: &mut Weighing) -> Option<Vec<Kind>> {
+        let masses = self.masses.iter().map(|(kind, mass)| (self.label(kind), mass));
+        let masses: HashMap<&str, &Mass> = masses.collect();
+        let (mut heavy, mut certain) = (false, false);
+        let kinds = frame.kinds.table.iter().map(|kind| {
+            let Some(own) = masses.get(kind.name.as_str()) else { return kind.clone() };
+            let names = [own.name.as_str(), kind.name.as_str()];
+            let named = names.into_iter().find_map(|name| Some((name, own.named(name)?)));
+            let (name, element) = named.map_or(("", None), |(name, element)| (name, Some(element)));
+            let weighed = weighing.weigh(Kind { element, ..kind.clone() }, name, own.mass);
+            heavy |= weighed.element.is_some() && own.mass > 2.5;
+            certain |= weighed.element.is_some() && (element.is_some() || !own.is_whole());
+            Kind { element: weighed.element.or(kind.element), ..weighed }
+        });
+        let kinds: Vec<Kind> = kinds.collect();
+        let is_charged = frame.columns.iter().any(|name| name == "q");
+        if heavy && !certain && !is_charged {
+            if frame.kinds.table.iter().all(|kind| kind.element.is_none()) {
+                let warning = "its masses are whole numbers, as in reduced units, so its types have no elements; \
+                               comments in `Masses` name them, as in `1 12.0 # C`";
+                frame.warnings.push(warning.to_owned());
+            }
+            return None;
+        }
+        heavy.then_some(kinds)
     }
 
     fn complete(self, mut frame: ParticleFrame) -> ParticleFrame {
         let units = self.title.split_once("units = ").map(|(_, units)| units);
-        frame.unit = unit(units.and_then(|units| units.split([',', ' ']).next()).unwrap_or(""));
+        let units = units.and_then(|units| units.split([',', ' ']).next()).unwrap_or("");
+        frame.unit = unit(units);
         if !self.labels.is_empty() {
             frame.kinds.rename(|name| kind(self.label(name), Naming::Types));
             drop_uncertain_elements(&mut frame.kinds, Naming::Types);
         }
-        if self.has_elements() {
-            let masses = self.masses.iter().map(|(name, mass)| (self.label(name), *mass));
-            let masses: HashMap<&str, f64> = masses.collect();
-            for kind in &mut frame.kinds.table {
-                let mass = masses.get(kind.name.as_str());
-                kind.element = mass.and_then(|&mass| Element::from_mass(mass));
-            }
-            if frame.unit == LengthUnit::Unknown {
-                frame.unit = LengthUnit::Angstrom;
+        let mut weighing = Weighing::default();
+        let has_masses = units != "lj";
+        if has_masses && let Some(kinds) = self.weighed(&mut frame, &mut weighing) {
+            frame.kinds.table = kinds;
+            drop_uncertain_elements(&mut frame.kinds, Naming::Symbols);
+            if frame.kinds.table.iter().any(|kind| kind.element.is_some()) {
+                weighing.warn(&mut frame);
+                if frame.unit == LengthUnit::Unknown {
+                    frame.unit = LengthUnit::Angstrom;
+                }
             }
         }
         frame.cell = self.cell();
