@@ -135,7 +135,6 @@ impl Prmtop {
 
     /// Returns the bonds, in which atoms are three times their index; the third number is a type.
     fn bonds(&mut self, atoms: usize) -> Result<Option<Bonds>, FileError> {
-        let path = self.lines.path().clone();
         let sections: Vec<Values> =
             BONDS.iter().filter_map(|name| self.sections.remove(*name)).collect();
         if sections.is_empty() {
@@ -145,14 +144,11 @@ impl Prmtop {
         for bond in sections.iter().flat_map(|section| section.numbers().chunks_exact(3)) {
             let row = |place: f64| {
                 let row = place / 3.0;
-                let there = row >= 0.0 && row.fract() == 0.0 && row < atoms as f64;
-                there.then_some(row as u32).ok_or_else(|| {
-                    let message = format!("a bond to atom {}, but there are {atoms}", row + 1.0);
-                    let help = "remove the bond from the file, or read no bonds of it";
-                    self.lines.ended(message).with_help(help)
-                })
+                (row >= 0.0 && row.fract() == 0.0 && row < atoms as f64).then_some(row as u32)
             };
-            bonds.push(&path, (row(bond[0])?, row(bond[1])?, [0; 3]))?;
+            if let Some([first, second]) = bonds.ends([row(bond[0]), row(bond[1])]) {
+                bonds.push(self.lines.path(), (first, second, [0; 3]))?;
+            }
         }
         Ok(Some(bonds.finish()))
     }
