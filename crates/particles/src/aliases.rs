@@ -19,9 +19,9 @@ pub const GROUPS: [&[&str]; 28] = [
     &["occupancy", "occ", "occupancies"],
     &["altloc", "alt", "label_alt_id"],
     &["insertion", "icode", "pdbx_pdb_ins_code"],
-    &["vx", "velocity.x", "velocity_x", "vel_x", "velo_x"],
-    &["vy", "velocity.y", "velocity_y", "vel_y", "velo_y"],
-    &["vz", "velocity.z", "velocity_z", "vel_z", "velo_z"],
+    &["vx", "velocity.x", "velocity_x", "vel_x", "velo_x", "velocity:0", "velocity_0"],
+    &["vy", "velocity.y", "velocity_y", "vel_y", "velo_y", "velocity:1", "velocity_1"],
+    &["vz", "velocity.z", "velocity_z", "vel_z", "velo_z", "velocity:2", "velocity_2"],
     &["fx", "force.x", "force_x", "forces_x"],
     &["fy", "force.y", "force_y", "forces_y"],
     &["fz", "force.z", "force_z", "forces_z"],
@@ -36,22 +36,59 @@ pub const GROUPS: [&[&str]; 28] = [
     &["zu", "unwrapped position.z"],
 ];
 
+/// Names of the coordinate of an axis: those that are suggested, then those made of a word, and of the axis or its index in
+/// arrays of vectors.
+macro_rules! coordinate {
+    ($axis:literal, $index:literal, $($suggested:literal)*) => {
+        coordinate!($axis, $index, [$($suggested)*], "pos" "position" "positions" "coord" "coords" "coordinate" "coordinates"
+            "cartn" "point" "points" "center" "centre" "centroid" "location")
+    };
+    ($axis:literal, $index:literal, [$($suggested:literal)*], $($word:literal)*) => {
+        &[
+            $($suggested,)*
+            $(
+                concat!($word, "_", $axis), concat!($word, ".", $axis), concat!($word, ":", $axis),
+                concat!($word, " ", $axis), concat!($word, $axis), concat!($axis, "_", $word),
+                concat!($axis, ".", $word), concat!($axis, " ", $word), concat!($axis, $word),
+                concat!($word, "_", $index), concat!($word, ".", $index), concat!($word, ":", $index),
+            )*
+        ]
+    };
+}
+
+/// Number of names of a role that are suggested.
+const SUGGESTED: usize = 6;
+
 /// Names that imply a role, ignoring case, in order of precedence.
 pub(crate) const USUAL: [(Role, &[&str]); 10] = [
-    (Role::X, &["x", "pos_x", "position_x", "position.x", "cartn_x", "points:0"]),
-    (Role::Y, &["y", "pos_y", "position_y", "position.y", "cartn_y", "points:1"]),
-    (Role::Z, &["z", "pos_z", "position_z", "position.z", "cartn_z", "points:2"]),
+    (Role::X, coordinate!("x", "0", "x" "pos_x" "position_x" "position.x" "cartn_x" "points:0")),
+    (Role::Y, coordinate!("y", "1", "y" "pos_y" "position_y" "position.y" "cartn_y" "points:1")),
+    (Role::Z, coordinate!("z", "2", "z" "pos_z" "position_z" "position.z" "cartn_z" "points:2")),
     (Role::Radius, &["radius"]),
     (Role::Diameter, &["diameter"]),
     (
         Role::Kind,
-        &["element", "species", "symbol", "type_symbol", "type", "typeid", "particle type"],
+        &[
+            "element",
+            "species",
+            "symbol",
+            "type_symbol",
+            "typelabel",
+            "type",
+            "typeid",
+            "particle type",
+        ],
     ),
     (Role::Red, &["red", "color.r"]),
     (Role::Green, &["green", "color.g"]),
     (Role::Blue, &["blue", "color.b"]),
     (Role::Material, &["material"]),
 ];
+
+/// Returns the names that imply a role, in order of precedence.
+pub(crate) fn usual(role: Role) -> &'static [&'static str] {
+    USUAL.iter().find(|(own, _)| *own == role).map_or(&[], |(_, names)| names)
+}
 
 /// Returns the names of the role that a name implies, ignoring case; none for colors and materials,
 /// which are not columns of numbers or texts.
@@ -64,18 +101,24 @@ fn names_of_role(name: &str) -> Option<&'static [&'static str]> {
 
 /// Returns the synonyms of a column name, ignoring case, the usual one first.
 pub fn of(name: &str) -> impl Iterator<Item = &'static str> {
+    up_to(name, usize::MAX)
+}
+
+/// Returns the synonyms of a column name among so many names of its role.
+fn up_to(name: &str, most: usize) -> impl Iterator<Item = &'static str> {
     let same = |other: &&&str| other.eq_ignore_ascii_case(name);
     let group = GROUPS.iter().find(|group| group.iter().any(|own| same(&own)));
-    let names = group.copied().or_else(|| names_of_role(name)).unwrap_or_default();
+    let of_role = || names_of_role(name).map(|names| &names[..names.len().min(most)]);
+    let names = group.copied().or_else(of_role).unwrap_or_default();
     names.iter().copied().filter(move |other| !other.eq_ignore_ascii_case(name))
 }
 
-/// Returns every valid name for the columns of a file.
+/// Returns the usual names for the columns of a file.
 pub fn typed<'n>(columns: impl Iterator<Item = &'n str>) -> Vec<&'n str> {
     let mut names: Vec<&'n str> = Vec::new();
     for name in columns {
         names.push(name);
-        for other in of(name) {
+        for other in up_to(name, SUGGESTED) {
             names.push(other);
         }
     }
@@ -112,9 +155,17 @@ mod tests {
             ("x", "position.x"),
             ("Particle Type", "type"),
             ("species", "type"),
+            ("Points_0", "x"),
+            ("y", "y_coord"),
+            ("z", "coordinates_2"),
+            ("X Position", "centroid.x"),
         ] {
             assert!(finds(name, other), "{name} {other}");
         }
         assert_eq!(of("speed").count(), 0);
+        assert_eq!(
+            typed(["x"].into_iter()),
+            ["x", "pos_x", "position_x", "position.x", "cartn_x", "points:0"]
+        );
     }
 }

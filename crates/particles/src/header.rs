@@ -27,8 +27,9 @@ pub(crate) fn is_separated(line: &[u8]) -> bool {
     line.iter().any(|byte| b",;\t".contains(byte))
 }
 
-/// Returns whether a line is the header of a table: three names or more, and no number.
+/// Returns whether a line is the header of a table: three names or more, and no number. Pandas leaves the name of row numbers empty.
 pub(crate) fn is_header(names: &[String]) -> bool {
+    let names = if names.first().is_some_and(String::is_empty) { &names[1..] } else { names };
     let is_name = |name: &String| !name.is_empty() && number::parse(name.as_bytes()).is_none();
     names.len() >= 3 && names.iter().all(is_name)
 }
@@ -76,6 +77,7 @@ mod tests {
             assert_eq!(names(line.as_bytes()), expected, "{line}");
         }
         let header = |line: &str| is_header(&names(line.as_bytes()));
+        assert!(header(",a,b,c") && !header(",a,b"));
         assert!(header("a b c") && !header("a b") && !header("a b 3") && !header("a,b,"));
         let below = |row: &str| is_row(&names(b"a b c d"), false, row.as_bytes());
         assert!(below("C 1,5 2 3") && !below("C 1 2 x") && !below("1 2 3"));

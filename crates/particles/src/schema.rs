@@ -180,7 +180,7 @@ pub fn unknown_column<'n>(name: &str, columns: impl Iterator<Item = &'n str> + C
 
 impl Naming {
     fn of(column: &str) -> Self {
-        let types = ["type", "typeid", "particle type"]
+        let types = ["typelabel", "type", "typeid", "particle type"]
             .iter()
             .any(|name| name.eq_ignore_ascii_case(column));
         if types { Self::Types } else { Self::Symbols }
@@ -249,9 +249,7 @@ impl Choice<'_> {
         if let Some(column) = known.and_then(|(_, name)| self.position(name)) {
             return Ok(Some(column));
         }
-        let usual =
-            aliases::USUAL.iter().find(|(own, _)| *own == role).map_or(&[][..], |(_, names)| names);
-        Ok(usual.iter().find_map(|name| self.position(name)))
+        Ok(aliases::usual(role).iter().find_map(|name| self.position(name)))
     }
 
     /// Returns the color columns, if all three exist.
