@@ -100,8 +100,16 @@ impl Builder {
     pub(crate) fn put(&mut self, slot: Slot, line: &Line, field: &[u8]) -> Result<(), FileError> {
         match slot {
             Slot::Skip => (),
-            Slot::Position(axis) => self.position[axis] = line.number(field)?,
-            Slot::Radius(factor) => self.frame.radius.push(line.number(field)? * factor),
+            Slot::Position(axis) => {
+                // An empty field is more likely a mistake.
+                let value = if field.is_empty() {
+                    line.number(field)
+                } else {
+                    line.number_or_missing(field)
+                };
+                self.position[axis] = value?;
+            }
+            Slot::Radius(factor) => self.frame.radius.push(line.number_or_missing(field)? * factor),
             Slot::Kind => self.kind(field),
             Slot::Color(channel) => self.channel(channel, line, field)?,
             Slot::Material => self.material(field),

@@ -3,13 +3,15 @@
 use crate::categories::{Codebook, add};
 use crate::{FileError, NumberColumn, TextColumn, lines::Line, number};
 
-/// Fields that mean a missing value.
-const MISSING: [&[u8]; 3] = [b"", b".", b"?"];
+/// Returns whether a field is a missing value of CIF or of a table, or is not a number.
+fn is_missing(field: &[u8]) -> bool {
+    matches!(field, b"." | b"?") || number::is_missing(field) || field.eq_ignore_ascii_case(b"nan")
+}
 
 /// An extra column.
 pub(crate) enum Extra {
-    /// No value yet: its name, and the index in [`MISSING`] of each field so far.
-    Unknown(String, Vec<u8>),
+    /// No value yet: the fields so far, which are kept if they turn out to be texts.
+    Unknown(TextColumn, Box<Codebook>),
     Number(NumberColumn),
     Text(TextColumn, Box<Codebook>),
     /// Dropped.
@@ -19,37 +21,38 @@ pub(crate) enum Extra {
 impl Extra {
     /// Creates a column of unknown type.
     pub(crate) fn new(name: &str) -> Self {
-        Self::Unknown(name.to_owned(), Vec::new())
+        Self::Unknown(TextColumn { name: name.to_owned(), ..TextColumn::default() }, Box::default())
     }
 
     /// Sets the type of a column in one of these lists, if it is unknown.
     pub(crate) fn declare(&mut self, texts: &[&str], numbers: &[&str]) {
-        let Self::Unknown(name, _) = self else { return };
-        if texts.contains(&name.as_str()) {
+        let Self::Unknown(column, _) = self else { return };
+        let is_in = |names: &[&str]| names.contains(&column.name.as_str());
+        if is_in(texts) {
             self.become_text();
-        } else if numbers.contains(&name.as_str()) {
+        } else if is_in(numbers) {
             self.become_number();
         }
     }
 
     /// Appends a field.
     pub(crate) fn put(&mut self, line: &Line, field: &[u8]) -> Result<(), FileError> {
-        let missing = MISSING.iter().position(|token| *token == field);
-        if let Self::Unknown(_, tokens) = self {
-            match missing {
-                Some(token) => {
-                    tokens.push(token as u8);
-                    return Ok(());
-                }
-                None if number::parse(field).is_some() => self.become_number(),
+        if matches!(self, Self::Unknown(..)) && !is_missing(field) {
+            match number::parse(field) {
+                Some(_) => self.become_number(),
                 None => self.become_text(),
             }
         }
         match self {
-            Self::Unknown(..) | Self::LeftOut => (),
-            Self::Number(column) if missing.is_some() => column.values.push(f64::NAN),
-            Self::Number(column) => column.values.push(line.number(field)?),
-            Self::Text(column, book) => push_text(column, book, field),
+            Self::LeftOut => (),
+            Self::Number(column) => column.values.push(match number::parse(field) {
+                Some(value) => value,
+                None if is_missing(field) => f64::NAN,
+                None => line.number(field)?,
+            }),
+            Self::Unknown(column, book) | Self::Text(column, book) => {
+                push_text(column, book, field);
+            }
         }
         Ok(())
     }
@@ -75,27 +78,25 @@ impl Extra {
     }
 
     fn become_number(&mut self) {
-        let Self::Unknown(name, tokens) = self else { return };
-        let values = vec![f64::NAN; tokens.len()];
-        *self = Self::Number(NumberColumn { name: std::mem::take(name), values });
+        let Self::Unknown(column, _) = self else { return };
+        let values = vec![f64::NAN; column.codes.len()];
+        *self = Self::Number(NumberColumn { name: std::mem::take(&mut column.name), values });
     }
 
     fn become_text(&mut self) {
-        let Self::Unknown(name, tokens) = self else { return };
-        let mut column = TextColumn { name: std::mem::take(name), ..TextColumn::default() };
-        let mut book = Box::default();
-        for &token in tokens.iter() {
-            push_text(&mut column, &mut book, MISSING[usize::from(token)]);
-        }
-        *self = Self::Text(column, book);
+        let Self::Unknown(column, book) = self else { return };
+        *self = Self::Text(std::mem::take(column), std::mem::take(book));
     }
 
-    /// Moves the column to `numbers` or `texts`. A column without values becomes texts if it has rows.
+    /// Moves the column to `numbers` or `texts`. A column without values becomes texts if it has rows, and none is `nan`.
     pub(crate) fn finish(mut self, numbers: &mut Vec<NumberColumn>, texts: &mut Vec<TextColumn>) {
-        match &self {
-            Self::Unknown(_, tokens) if tokens.is_empty() => self.become_number(),
-            Self::Unknown(..) => self.become_text(),
-            _ => (),
+        if let Self::Unknown(column, _) = &self {
+            let is_nan = |name: &String| number::parse(name.as_bytes()).is_some();
+            if column.codes.is_empty() || column.names.iter().any(is_nan) {
+                self.become_number();
+            } else {
+                self.become_text();
+            }
         }
         match self {
             Self::Unknown(..) | Self::LeftOut => (),

@@ -76,6 +76,16 @@ impl<'l> Line<'l> {
         number::parse(field).ok_or_else(|| self.not(field, "a number"))
     }
 
+    /// Parses a field as a number, or as a missing one, which is NaN.
+    #[inline]
+    pub(crate) fn number_or_missing(&self, field: &[u8]) -> Result<f64, FileError> {
+        match number::parse(field) {
+            Some(number) => Ok(number),
+            None if number::is_missing(field) => Ok(f64::NAN),
+            None => Err(self.not(field, "a number")),
+        }
+    }
+
     /// Parses a field as a whole number.
     pub(crate) fn whole_number(&self, field: &[u8]) -> Result<u64, FileError> {
         number::whole(field).ok_or_else(|| self.not(field, "a whole number"))
