@@ -46,6 +46,29 @@ impl Cell {
         (finite && a.cross(b).dot(c) != 0.0).then_some(self)
     }
 
+    /// Makes edges of length 0, as of simulations in two dimensions, normals of length 1 with the others at their middle, along which
+    /// the cell is not periodic. Cells without any edge stay.
+    pub(crate) fn thickened(mut self) -> Self {
+        if self.vectors == [DVec3::ZERO; 3] {
+            return self;
+        }
+        for edge in 0..3 {
+            if self.vectors[edge] != DVec3::ZERO {
+                continue;
+            }
+            let [next, last] = [(edge + 1) % 3, (edge + 2) % 3].map(|other| self.vectors[other]);
+            let normal = match (next == DVec3::ZERO, last == DVec3::ZERO) {
+                (false, false) => next.cross(last),
+                (false, true) => next.any_orthogonal_vector(),
+                _ => last.any_orthogonal_vector(),
+            };
+            self.vectors[edge] = normal.normalize_or_zero();
+            self.origin -= self.vectors[edge] * 0.5;
+            self.periodic[edge] = false;
+        }
+        self
+    }
+
     /// Returns the fractional coordinates of a point: the inverse of [`Cell::cartesian`].
     pub fn fractional(&self, point: DVec3) -> DVec3 {
         self.matrix().inverse() * (point - self.origin)
@@ -81,6 +104,23 @@ impl Cell {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn flat_cells_are_as_thick_as_1_and_not_periodic_there() {
+        let cell = |vectors: [[f64; 3]; 3]| {
+            let vectors = vectors.map(DVec3::from_array);
+            Cell { origin: DVec3::ZERO, vectors, periodic: [true; 3] }.thickened().checked()
+        };
+        let flat = cell([[6.0, 0.0, 0.0], [1.5, 5.0, 0.0], [0.0; 3]]).expect("a cell");
+        assert_eq!(flat.vectors, [DVec3::X * 6.0, DVec3::new(1.5, 5.0, 0.0), DVec3::Z]);
+        assert_eq!((flat.origin, flat.periodic), (DVec3::Z * -0.5, [true, true, false]));
+        let line = cell([[0.0; 3], [0.0, 3.0, 0.0], [0.0; 3]]).expect("a cell");
+        assert_eq!((line.periodic, line.vectors[1]), ([false, true, false], DVec3::Y * 3.0));
+        assert!((line.matrix().determinant().abs() - 3.0).abs() < 1e-12, "{line:?}");
+        for none in [[[0.0; 3]; 3], [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0; 3]]] {
+            assert_eq!(cell(none), None);
+        }
+    }
 
     #[test]
     fn cells_have_the_given_lengths_and_angles() {

@@ -72,6 +72,8 @@ pub(crate) struct Dcd {
     first_frame: Option<[Vec<f32>; 3]>,
     has_cell: bool,
     has_fourth: bool,
+    /// Version of CHARMM.
+    version: i64,
     start: i64,
     interval: i64,
     /// Offset of the first frame.
@@ -95,6 +97,7 @@ impl Dcd {
             first_frame: None,
             has_cell: false,
             has_fourth: false,
+            version: 0,
             start: 0,
             interval: 0,
             frames_at: 0,
@@ -113,7 +116,8 @@ impl Dcd {
         let words = Numbers::new(&header[4..], self.layout.order).array::<20>(Scalar::I32);
         let words = words.unwrap_or([0.0; 20]).map(|word| word as i64);
         // X-PLOR has neither.
-        let is_charmm = words[VERSION] != 0;
+        self.version = words[VERSION];
+        let is_charmm = self.version != 0;
         self.has_cell = is_charmm && words[HAS_CELL] != 0;
         self.has_fourth = is_charmm && words[HAS_FOURTH] != 0;
         (self.start, self.interval) = (words[START], words[INTERVAL]);
@@ -196,7 +200,7 @@ impl Dcd {
         if self.has_cell {
             let record = self.record(at, Some(CELL))?;
             let numbers = Numbers::new(&record, self.layout.order).array::<6>(Scalar::F64);
-            cell = numbers.and_then(self::cell);
+            cell = numbers.and_then(|numbers| self::cell(numbers, self.version));
             at += self.layout.record(CELL);
         }
         let length = 4 * self.stored(frame);
@@ -230,25 +234,31 @@ impl Dcd {
     }
 }
 
+/// Version of CHARMM that other programs write, whatever the cell: NAMD, LAMMPS, OpenMM and VMD.
+const OTHERS: i64 = 24;
+
 /// Returns the cell of a record: lengths and angles in degrees, as A, gamma, B, beta, alpha, C; or the
 /// cosines of the angles, as NAMD and LAMMPS write them; or the lower triangle of a symmetric matrix of
-/// edges, as CHARMM has since version 25.
-fn cell([a, gamma, b, beta, alpha, c]: [f64; 6]) -> Option<Cell> {
+/// edges, as CHARMM has since version 22.
+fn cell(numbers: [f64; 6], version: i64) -> Option<Cell> {
+    let [a, gamma, b, beta, alpha, c] = numbers;
     let angles = [alpha, beta, gamma];
-    if angles.iter().all(|cosine| cosine.abs() <= 1.0) {
-        // Right angles are exact.
-        let degrees =
-            |cosine: f64| if cosine == 0.0 { 90.0 } else { libm::acos(cosine).to_degrees() };
-        return Cell::of_lengths([a, b, c], angles.map(degrees));
-    }
     // Smaller angles are components of edges: those of cells that are simulated are larger.
     let is_angle = |angle: &f64| *angle > 30.0 && *angle < 180.0;
     if angles.iter().all(is_angle) {
         return Cell::of_lengths([a, b, c], angles);
     }
-    let (xx, xy, yy, xz, yz, zz) = (a, gamma, b, beta, alpha, c);
+    let [xx, xy, yy, xz, yz, zz] = numbers;
     let vectors = [DVec3::new(xx, xy, xz), DVec3::new(xy, yy, yz), DVec3::new(xz, yz, zz)];
-    Cell { origin: DVec3::ZERO, vectors, periodic: [true; 3] }.checked()
+    let is_positive =
+        xx > 0.0 && xx * yy > xy * xy && vectors[0].cross(vectors[1]).dot(vectors[2]) > 0.0;
+    let is_matrix = version >= 22 && version != OTHERS && is_positive;
+    let cosines = angles.iter().all(|cosine| cosine.abs() <= 1.0) && !is_matrix;
+    // Right angles are exact.
+    let degrees = |cosine: f64| if cosine == 0.0 { 90.0 } else { libm::acos(cosine).to_degrees() };
+    let of_cosines = || Cell::of_lengths([a, b, c], angles.map(degrees));
+    let matrix = || Cell { origin: DVec3::ZERO, vectors, periodic: [true; 3] }.checked();
+    if cosines { of_cosines().or_else(matrix) } else { matrix() }
 }
 
 impl FrameReader for Dcd {
@@ -283,21 +293,28 @@ mod tests {
     use super::*;
 
     fn lengths(numbers: [f64; 6]) -> Option<[f64; 3]> {
-        cell(numbers).map(|cell| cell.vectors.map(DVec3::length))
+        cell(numbers, OTHERS).map(|cell| cell.vectors.map(DVec3::length))
     }
 
     #[test]
     fn cells_are_angles_cosines_or_matrices() {
-        let degrees = cell([20.0, 90.0, 30.0, 90.0, 60.0, 40.0]).expect("a cell");
-        let cosines = cell([20.0, 0.0, 30.0, 0.0, 0.5, 40.0]).expect("a cell");
+        let degrees = cell([20.0, 90.0, 30.0, 90.0, 60.0, 40.0], OTHERS).expect("a cell");
+        let cosines = cell([20.0, 0.0, 30.0, 0.0, 0.5, 40.0], OTHERS).expect("a cell");
         for (one, other) in degrees.vectors.into_iter().zip(cosines.vectors) {
             assert!((one - other).length() < 1e-12, "{degrees:?} {cosines:?}");
         }
         assert_eq!(degrees.vectors[1], DVec3::new(0.0, 30.0, 0.0));
         for tilt in [-2.0, 2.0] {
-            let matrix = cell([20.0, tilt, 30.0, 0.0, 1.5, 40.0]).expect("a cell");
+            let matrix = cell([20.0, tilt, 30.0, 0.0, 1.5, 40.0], OTHERS).expect("a cell");
             assert_eq!(matrix.vectors[1], DVec3::new(tilt, 30.0, 1.5));
         }
+        // Of CHARMM, small numbers are components of edges, too, if they can be.
+        let small = [20.0, -0.3, 21.0, 0.2, -0.1, 22.0];
+        assert_eq!(cell(small, 46).expect("a cell").vectors[2], DVec3::new(0.2, -0.1, 22.0));
+        let [one, other] = [cell(small, OTHERS), cell(small, 21)];
+        assert!(one == other && one.expect("a cell").vectors[0] == DVec3::X * 20.0);
+        let no_matrix = [0.5, -0.6, 0.5, 0.0, 0.0, 1.0];
+        assert_eq!(cell(no_matrix, 46), cell(no_matrix, OTHERS));
         assert_eq!(lengths([0.0; 6]), None);
         assert_eq!(lengths([f64::NAN; 6]), None);
         assert_eq!(lengths([20.0, 0.0, 30.0, 0.0, 0.0, 40.0]), Some([20.0, 30.0, 40.0]));

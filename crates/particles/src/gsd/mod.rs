@@ -211,6 +211,13 @@ impl Gsd {
         Ok(())
     }
 
+    /// Returns whether the options say which column has radii.
+    fn chooses_radii(&self) -> bool {
+        let is_size = |(role, _): &(Role, String)| matches!(role, Role::Radius | Role::Diameter);
+        matches!(self.options.radii, Radii::Column(_))
+            || self.options.columns.roles.iter().any(is_size)
+    }
+
     fn radius(&mut self, count: u64) -> Result<Vec<f64>, FileError> {
         let mut role = self.options.columns.roles.iter();
         let role = role.find(|(role, _)| matches!(role, Role::Radius | Role::Diameter)).cloned();
@@ -262,6 +269,13 @@ impl Gsd {
         let shape = |row| shapes.get(codes.code(row) as usize).copied().unwrap_or_default();
         let rows = 0..codes.len();
         let others = rows.clone().filter(|&row| shape(row) == TypeShape::Other).count();
+        if !self.chooses_radii() {
+            for (row, radius) in frame.radius.iter_mut().enumerate() {
+                if let TypeShape::Sphere(own) = shape(row) {
+                    *radius = own;
+                }
+            }
+        }
         let is_ellipsoid = |shape: &TypeShape| matches!(shape, TypeShape::Ellipsoid(_));
         let mut semi_axes = Vec::new();
         if shapes.iter().any(is_ellipsoid) {
@@ -269,7 +283,7 @@ impl Gsd {
             for (axis, name) in SEMI_AXES.into_iter().enumerate() {
                 let value = |row| match shape(row) {
                     TypeShape::Ellipsoid(axes) => axes[axis],
-                    TypeShape::Sphere | TypeShape::Other => 0.0,
+                    _ => 0.0,
                 };
                 let values = rows.clone().map(value).collect();
                 semi_axes.push(NumberColumn { name: name.to_owned(), values });
@@ -314,9 +328,11 @@ impl Gsd {
 /// The shape of a type of particles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum TypeShape {
-    /// A sphere, or nothing that the file tells.
+    /// Nothing that the file tells: a sphere with the diameter of the particle.
     #[default]
-    Sphere,
+    Unknown,
+    /// A sphere with this radius.
+    Sphere(f64),
     /// An ellipsoid with these semi-axes.
     Ellipsoid(DVec3),
     /// A polyhedron, a rod or the like, or an ellipsoid without its semi-axes.
@@ -332,9 +348,16 @@ impl TypeShape {
             let rest = rest.trim_start().strip_prefix(':')?.trim_start();
             Some(rest[..rest.find([',', '}'])?].trim_end())
         };
-        let axis = |key: &str| value(key)?.parse().ok().filter(|axis| *axis > 0.0);
+        let axis = |key: &str| value(key)?.parse().ok().filter(|axis: &f64| *axis > 0.0);
         match value("type") {
-            None | Some("\"Sphere\"") => Self::Sphere,
+            None => Self::Unknown,
+            Some("\"Sphere\"") => {
+                let radius = axis("diameter").map(|diameter| diameter * 0.5);
+                let rounding = axis("rounding_radius");
+                let radius =
+                    radius.into_iter().chain(rounding).reduce(|radius, more| radius + more);
+                radius.map_or(Self::Unknown, Self::Sphere)
+            }
             Some("\"Ellipsoid\"") => match (axis("a"), axis("b"), axis("c")) {
                 (Some(a), Some(b), Some(c)) => Self::Ellipsoid(DVec3::new(a, b, c)),
                 _ => Self::Other,
@@ -351,7 +374,9 @@ pub(super) fn cell(edges: &[f64]) -> Option<Cell> {
     let a = DVec3::new(x, 0.0, 0.0);
     let b = DVec3::new(xy * y, y, 0.0);
     let c = DVec3::new(xz * z, yz * z, z);
-    Cell { origin: (a + b + c) * -0.5, vectors: [a, b, c], periodic: [true; 3] }.checked()
+    Cell { origin: (a + b + c) * -0.5, vectors: [a, b, c], periodic: [true; 3] }
+        .thickened()
+        .checked()
 }
 
 impl FrameReader for Gsd {
@@ -380,11 +405,35 @@ mod tests {
     use super::*;
 
     #[test]
+    fn shapes_of_types_have_their_sizes() {
+        for (text, expected) in [
+            ("", TypeShape::Unknown),
+            ("{\"type\": \"Sphere\"}", TypeShape::Unknown),
+            ("{\"type\": \"Sphere\", \"diameter\": 3}", TypeShape::Sphere(1.5)),
+            (
+                "{\"diameter\":2.0,\"rounding_radius\":0.25,\"type\":\"Sphere\"}",
+                TypeShape::Sphere(1.25),
+            ),
+            ("{\"type\":\"Sphere\",\"rounding_radius\":0.25}", TypeShape::Sphere(0.25)),
+            (
+                "{\"type\":\"Ellipsoid\",\"a\":1,\"b\":2,\"c\":3}",
+                TypeShape::Ellipsoid(DVec3::new(1.0, 2.0, 3.0)),
+            ),
+            ("{\"type\":\"Polygon\",\"rounding_radius\":1}", TypeShape::Other),
+        ] {
+            assert_eq!(TypeShape::of(text), expected, "{text}");
+        }
+    }
+
+    #[test]
     fn boxes_lie_around_the_origin() {
         let cell = cell(&[2.0, 4.0, 8.0, 0.5, 0.25, -0.5]).expect("a box");
         assert_eq!(cell.vectors[1], DVec3::new(2.0, 4.0, 0.0));
         assert_eq!(cell.vectors[2], DVec3::new(2.0, -4.0, 8.0));
         assert_eq!(cell.cartesian([0.5; 3]), DVec3::ZERO);
         assert_eq!(super::cell(&[1.0; 5]), None);
+        let flat = super::cell(&[6.0, 5.0, 0.0, 0.3, 0.0, 0.0]).expect("a box of two dimensions");
+        assert_eq!(flat.vectors, [DVec3::X * 6.0, DVec3::new(1.5, 5.0, 0.0), DVec3::Z]);
+        assert_eq!((flat.periodic, flat.cartesian([0.5; 3])), ([true, true, false], DVec3::ZERO));
     }
 }
