@@ -11,6 +11,7 @@ pub(crate) enum Scalar {
     U32,
     I64,
     U64,
+    F16,
     F32,
     F64,
 }
@@ -29,7 +30,7 @@ impl Scalar {
     pub(crate) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
+            Self::I16 | Self::U16 | Self::F16 => 2,
             Self::I32 | Self::U32 | Self::F32 => 4,
             Self::I64 | Self::U64 | Self::F64 => 8,
         }
@@ -56,10 +57,24 @@ impl Scalar {
             Self::U32 => f64::from(word as u32),
             Self::I64 => word as i64 as f64,
             Self::U64 => word as f64,
+            Self::F16 => half(word as u16),
             Self::F32 => f64::from(f32::from_bits(word as u32)),
             Self::F64 => f64::from_bits(word),
         }
     }
+}
+
+/// Returns the value of a half-precision number (IEEE 754 binary16).
+fn half(bits: u16) -> f64 {
+    let (exponent, fraction) = (bits >> 10 & 0x1F, f64::from(bits & 0x3FF));
+    // Powers of two are exact.
+    let size = match exponent {
+        0 => fraction * f64::from_bits((1023 - 24) << 52),
+        0x1F if fraction == 0.0 => f64::INFINITY,
+        0x1F => f64::NAN,
+        _ => (1024.0 + fraction) * f64::from_bits((1023 - 25 + u64::from(exponent)) << 52),
+    };
+    if bits >> 15 == 1 { -size } else { size }
 }
 
 #[cfg(test)]
@@ -77,6 +92,11 @@ mod tests {
             (Scalar::U32, &u32::MAX.to_le_bytes(), 4_294_967_295.0),
             (Scalar::I64, &(-(1_i64 << 40)).to_le_bytes(), -1_099_511_627_776.0),
             (Scalar::U64, &(1_u64 << 63).to_le_bytes(), 9_223_372_036_854_775_808.0),
+            (Scalar::F16, &0xC100_u16.to_le_bytes(), -2.5),
+            (Scalar::F16, &0x3555_u16.to_le_bytes(), 1365.0 / 4096.0),
+            (Scalar::F16, &1_u16.to_le_bytes(), 1.0 / f64::from(1 << 24)),
+            (Scalar::F16, &0x7BFF_u16.to_le_bytes(), 65_504.0),
+            (Scalar::F16, &0xFC00_u16.to_le_bytes(), f64::NEG_INFINITY),
             (Scalar::F32, &0.1_f32.to_le_bytes(), f64::from(0.1_f32)),
             (Scalar::F64, &0.1_f64.to_le_bytes(), 0.1),
         ] {

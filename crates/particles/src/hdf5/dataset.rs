@@ -91,6 +91,7 @@ impl Datatype {
             (0 | 4, 4, false) => Scalar::U32,
             (0 | 4, 8, true) => Scalar::I64,
             (0 | 4, 8, false) => Scalar::U64,
+            (1, 2, _) => Scalar::F16,
             (1, 4, _) => Scalar::F32,
             (1, 8, _) => Scalar::F64,
             (3, ..) => return (size > 0).then_some(Self::Text(size)),

@@ -1,4 +1,4 @@
-//! Reads NPZ: several arrays in a ZIP archive, as `numpy.savez` writes them.
+//! Reads NPZ: several arrays in a ZIP archive, as `numpy.savez` writes them. A leading dimension may be that of frames.
 
 use super::array::{Array, Transpose};
 use super::schema;
@@ -6,24 +6,21 @@ use crate::builder::{Builder, clamp_channel};
 use crate::categories::{Codebook, add};
 use crate::{
     FileError, Format, Kind, NumberColumn, ParticleFrame, Radii, ReadOptions, Rgb, Role,
-    TextColumn, frame_reader::FrameReader, options::component_names, progress::CountedFile,
-    schema::Schema, source::Source,
+    TextColumn, aliases, frame_reader::FrameReader, options::component_names,
+    progress::CountedFile, schema::Schema, source::Source,
 };
-use std::io::BufReader;
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 use std::sync::Arc;
-use zip::ZipArchive;
-use zip::read::ZipFile;
+use zip::read::{ZipFile, ZipFileSeek};
+use zip::result::ZipError;
+use zip::{CompressionMethod, ZipArchive};
 
 /// Names of arrays of positions, in order of precedence.
 const POSITIONS: [&str; 9] =
     ["position", "positions", "pos", "xyz", "points", "coordinates", "coords", "centers", "arr_0"];
-/// Names of arrays of one coordinate, by axis.
-const AXES: [(Role, [&str; 3]); 3] = [
-    (Role::X, ["x", "pos_x", "position_x"]),
-    (Role::Y, ["y", "pos_y", "position_y"]),
-    (Role::Z, ["z", "pos_z", "position_z"]),
-];
 /// Names of arrays of radii.
 const RADII: [&str; 3] = ["radius", "radii", "r"];
 /// Names of arrays of diameters.
@@ -52,7 +49,46 @@ pub(in super::super) struct Npz {
     path: Arc<Path>,
     archive: ZipArchive<BufReader<CountedFile>>,
     options: ReadOptions,
-    done: bool,
+    /// The next frame.
+    frame: u64,
+    /// Number of frames, once it is known.
+    frames: Option<u64>,
+    /// Decompressed arrays, in which frames are found.
+    unpacked: HashMap<String, File>,
+}
+
+/// The arrays of positions.
+enum Positions {
+    Rows(String),
+    Axes([String; 3]),
+}
+
+/// The bytes of an array.
+enum Entry<'a> {
+    /// From their beginning on.
+    First(ZipFile<'a, BufReader<CountedFile>>),
+    Stored(ZipFileSeek<'a, BufReader<CountedFile>>),
+    Unpacked(&'a File),
+}
+
+impl Read for Entry<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        match self {
+            Self::First(file) => file.read(buffer),
+            Self::Stored(file) => file.read(buffer),
+            Self::Unpacked(file) => file.read(buffer),
+        }
+    }
+}
+
+impl Seek for Entry<'_> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        match self {
+            Self::First(_) => Err(io::ErrorKind::Unsupported.into()),
+            Self::Stored(file) => file.seek(to),
+            Self::Unpacked(file) => file.seek(to),
+        }
+    }
 }
 
 impl Npz {
@@ -64,7 +100,8 @@ impl Npz {
                 FileError::whole_file(&path, format!("is not a complete ZIP archive: {error}"));
             error.with_help("the file is cut off")
         })?;
-        Ok(Self { path, archive, options: options.clone(), done: false })
+        let (options, unpacked) = (options.clone(), HashMap::new());
+        Ok(Self { path, archive, options, frame: 0, frames: None, unpacked })
     }
 
     /// Returns the names of the arrays.
@@ -84,45 +121,92 @@ impl Npz {
         usual.iter().find_map(same).cloned()
     }
 
-    fn open(
-        &mut self,
-        name: &str,
-        transpose: Transpose,
-    ) -> Result<Array<ZipFile<'_, BufReader<CountedFile>>>, FileError> {
+    /// Opens an array at the current frame.
+    fn open(&mut self, name: &str, transpose: Transpose) -> Result<Array<Entry<'_>>, FileError> {
+        let path = self.path.clone();
         let names = self.names().join(", ");
-        let file = self.archive.by_name(&format!("{name}.npy")).map_err(|error| {
+        let frame = self.frame;
+        let entry = self.entry(&format!("{name}.npy")).map_err(|error| {
             let message = format!("the array `{name}` cannot be read ({error}); there are {names}");
-            FileError::whole_file(&self.path, message)
+            FileError::whole_file(&path, message)
         })?;
-        Array::open(file, transpose).map_err(|message| fault(&self.path, name, &message))
+        let array = Array::open(entry, transpose);
+        let mut array = array.map_err(|message| fault(&path, name, &message))?;
+        let moved = array.move_to(frame);
+        moved
+            .map_err(|error| fault(&path, name, &format!("ends before frame {frame}: {error}")))?;
+        Ok(array)
     }
 
-    /// Reads positions, and returns the name of their array.
-    fn positions(&mut self) -> Result<(Builder, String), FileError> {
+    /// Returns the bytes of a file of the archive, in which frames after the first one can be found.
+    fn entry(&mut self, name: &str) -> Result<Entry<'_>, ZipError> {
+        if self.frame == 0 {
+            return self.archive.by_name(name).map(Entry::First);
+        }
+        if self.archive.by_name(name)?.compression() == CompressionMethod::Stored {
+            return self.archive.by_name_seek(name).map(Entry::Stored);
+        }
+        if !self.unpacked.contains_key(name) {
+            let mut file = tempfile::tempfile()?;
+            io::copy(&mut self.archive.by_name(name)?, &mut file)?;
+            self.unpacked.insert(name.to_owned(), file);
+        }
+        let mut file = self.unpacked.get(name).ok_or(ZipError::FileNotFound)?;
+        file.rewind()?;
+        Ok(Entry::Unpacked(file))
+    }
+
+    /// Returns how arrays with a row for each particle are read.
+    pub(super) fn to_rows(&self, count: usize) -> Transpose {
+        Transpose::ToRows { count: count as u64, frames: self.frames.unwrap_or(1) }
+    }
+
+    /// Returns the number of frames: that of positions.
+    fn count_frames(&mut self) -> Result<u64, FileError> {
+        if let Some(frames) = self.frames {
+            return Ok(frames);
+        }
+        let frames = match self.position_arrays()? {
+            Positions::Rows(name) => self.open(&name, Transpose::ToPositions)?.frames().max(1),
+            Positions::Axes(_) => 1,
+        };
+        Ok(*self.frames.insert(frames))
+    }
+
+    /// Returns the names of the arrays of positions.
+    fn position_arrays(&self) -> Result<Positions, FileError> {
         let names = self.names();
         let roles = &self.options.columns.roles;
         let has_axes = roles.iter().any(|(role, _)| matches!(role, Role::Y | Role::Z));
         let whole = self.find(Role::X, &POSITIONS).filter(|_| !has_axes);
-        let axes = AXES.map(|(role, usual)| self.find(role, &usual));
+        let axes = [Role::X, Role::Y, Role::Z].map(|role| self.find(role, aliases::usual(role)));
         let only = if names.len() == 1 { names.first().cloned() } else { None };
-        let name = match (whole, axes, only) {
-            (None, [Some(x), Some(y), Some(z)], _) => return self.axes([x, y, z]),
-            (Some(name), ..) | (None, _, Some(name)) => name,
+        match (whole, axes, only) {
+            (None, [Some(x), Some(y), Some(z)], _) => Ok(Positions::Axes([x, y, z])),
+            (Some(name), ..) | (None, _, Some(name)) => Ok(Positions::Rows(name)),
             (None, _, None) if names.is_empty() => {
                 let error =
                     FileError::whole_file(&self.path, "is a ZIP archive without arrays of NumPy");
-                return Err(error.with_help(
+                Err(error.with_help(
                     "unpack one of its files: unzip -p FILE NAME | spherule render - -o picture.png",
-                ));
+                ))
             }
             (None, _, None) => {
                 let message =
                     format!("no array is named `position`; there are {}", names.join(", "));
-                return Err(FileError::whole_file(&self.path, message).with_help(
+                Err(FileError::whole_file(&self.path, message).with_help(
                     "name one of rows `x y z`, as in --columns x=NAME, or one for each axis, as in \
                      --columns x=NAME,y=NAME,z=NAME",
-                ));
+                ))
             }
+        }
+    }
+
+    /// Reads positions, and returns the name of their array.
+    fn positions(&mut self) -> Result<(Builder, String), FileError> {
+        let name = match self.position_arrays()? {
+            Positions::Rows(name) => name,
+            Positions::Axes(names) => return self.axes(names),
         };
         let path = self.path.clone();
         let mut array = self.open(&name, Transpose::ToPositions)?;
@@ -155,7 +239,7 @@ impl Npz {
         let mut parts = Vec::new();
         for array in self.names() {
             // An archive may hold other files.
-            let Ok(open) = self.open(&array, Transpose::ToRows(count as u64)) else { continue };
+            let Ok(open) = self.open(&array, self.to_rows(count)) else { continue };
             let width = open.columns();
             let fits = open.count() == count as u64 && (1..=WIDEST).contains(&width);
             if fits && open.names().is_none() {
@@ -259,7 +343,10 @@ impl Npz {
     /// Returns the numbers of an array that has a row of `columns` numbers for each particle.
     fn rows(&mut self, name: &str, columns: usize, count: usize) -> Result<Vec<f64>, FileError> {
         let path = self.path.clone();
-        let mut array = self.open(name, Transpose::ToRows(count as u64))?;
+        // Rows of several columns are not those of frames.
+        let to_rows = self.to_rows(count);
+        let single = Transpose::ToRows { count: count as u64, frames: 1 };
+        let mut array = self.open(name, if columns == 1 { to_rows } else { single })?;
         if array.is_text(0) {
             return Err(fault(&path, name, "holds texts, but numbers are needed"));
         }
@@ -289,7 +376,7 @@ impl Npz {
         count: usize,
     ) -> Result<Option<TextColumn>, FileError> {
         let path = self.path.clone();
-        let mut array = self.open(name, Transpose::Never)?;
+        let mut array = self.open(name, self.to_rows(count))?;
         if !array.is_text(0) {
             return Ok(None);
         }
@@ -331,8 +418,22 @@ impl Npz {
 
     /// Returns the rows and columns of an array; `None` if it has more dimensions or cannot be read.
     pub(super) fn shape(&mut self, name: &str, transpose: Transpose) -> Option<[u64; 2]> {
+        let frames = self.frames;
         let array = self.open(name, transpose).ok()?;
-        (array.frames() <= 1).then(|| [array.count(), array.columns() as u64])
+        (array.frames() <= 1 || Some(array.frames()) == frames)
+            .then(|| [array.count(), array.columns() as u64])
+    }
+
+    /// Returns whether an array of cells has a row for each frame, and is no matrix or pair of corners.
+    pub(super) fn has_row_for_each_frame(&self, [rows, columns]: [u64; 2]) -> bool {
+        self.frames.is_some_and(|frames| frames > 1 && frames == rows)
+            && [3, 6, 9].contains(&columns)
+            && rows.saturating_mul(columns) > 9
+    }
+
+    /// Returns the number of the current frame.
+    pub(super) fn frame_number(&self) -> usize {
+        self.frame as usize
     }
 
     /// Returns all numbers of an array.
@@ -359,7 +460,7 @@ fn number_of(path: &Path, name: &str, found: &str, count: usize) -> FileError {
 
 impl FrameReader for Npz {
     fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
-        if std::mem::replace(&mut self.done, true) {
+        if self.frame >= self.count_frames()? {
             return Ok(None);
         }
         let (mut builder, positions) = self.positions()?;
@@ -393,6 +494,17 @@ impl FrameReader for Npz {
         used.extend(frame.roles.iter().map(|(_, name)| name.clone()));
         self.keep(&mut frame, &used)?;
         self.read_rest(&mut frame, &used)?;
+        self.frame += 1;
         Ok(Some(frame))
+    }
+
+    fn skip(&mut self) -> Result<bool, FileError> {
+        let there = self.more()?;
+        self.frame += u64::from(there);
+        Ok(there)
+    }
+
+    fn more(&mut self) -> Result<bool, FileError> {
+        Ok(self.frame < self.count_frames()?)
     }
 }

@@ -1,16 +1,13 @@
 //! Reads one array (<https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html>).
 
 use super::MAGIC;
-use super::header::{Field, Item, ROW, after, fields, shape};
+use super::header::{COLUMNS, Field, Item, ROW, after, fields, shape};
 use crate::FileError;
-use std::io::{self, BufReader, Read};
+use std::io::{self, BufReader, Read, Seek};
 use std::path::Path;
 
 /// Maximum length of a header in bytes.
 const HEADER: u32 = 1 << 16;
-
-/// Maximum number of columns of an array.
-const COLUMNS: usize = 10_000;
 
 /// Reader of an array.
 pub(super) struct Array<R> {
@@ -29,8 +26,8 @@ pub(super) enum Transpose {
     Never,
     /// If its shape is (3, N) or (4, N), and its rows cannot be positions.
     ToPositions,
-    /// If it has this number of columns, but not of rows.
-    ToRows(u64),
+    /// If it has a column for each of `count` particles, but no row. Rows for each of several frames stay.
+    ToRows { count: u64, frames: u64 },
 }
 
 impl Transpose {
@@ -39,7 +36,7 @@ impl Transpose {
         match self {
             Self::Never => false,
             Self::ToPositions => is_position(rows) && !is_position(columns),
-            Self::ToRows(count) => columns == count && rows != count,
+            Self::ToRows { count, .. } => columns == count && rows != count,
         }
     }
 }
@@ -83,8 +80,18 @@ impl<R: Read> Array<R> {
         let (fields, structured) = fields(&header)?;
         let by_columns = after(&header, "fortran_order").ok_or_else(unclear)?.starts_with("True");
         let shape = after(&header, "shape").and_then(shape).ok_or_else(unclear)?;
-        let rank = shape.len();
         let mut array = Self { reader, fields, structured, by_columns, shape, transposed: false };
+        if let (Transpose::ToRows { count, frames: frames @ 2.. }, [rows, columns]) =
+            (transpose, &array.shape[..])
+            && (*rows, *columns) == (frames, count)
+            && !structured
+            && !by_columns
+            && frames != count
+        {
+            // A number for each particle of each frame.
+            array.shape.push(1);
+        }
+        let rank = array.shape.len();
         if let [rows, columns] = array.shape[..]
             && !structured
             && !array.fields[0].kind.is_text()
@@ -205,6 +212,12 @@ impl<R: Read> Array<R> {
         Ok(())
     }
 
+    /// Returns the length of a frame in bytes.
+    fn frame_size(&self) -> u64 {
+        let row: usize = (0..self.columns()).map(|column| self.field(column).kind.size()).sum();
+        self.count().saturating_mul(row as u64)
+    }
+
     /// Reads the next column of an array in Fortran order.
     fn column(&mut self, count: u64) -> io::Result<Vec<f64>> {
         let mut column = Vec::new();
@@ -219,6 +232,18 @@ impl<R: Read> Array<R> {
             left -= length as u64;
         }
         Ok(column)
+    }
+}
+
+impl<R: Read + Seek> Array<R> {
+    /// Moves to a frame, if there are several.
+    pub(super) fn move_to(&mut self, frame: u64) -> io::Result<()> {
+        if self.frames() <= 1 || frame == 0 {
+            return Ok(());
+        }
+        let offset =
+            self.frame_size().checked_mul(frame).and_then(|offset| i64::try_from(offset).ok());
+        self.reader.seek_relative(offset.ok_or(io::ErrorKind::UnexpectedEof)?)
     }
 }
 
@@ -250,6 +275,24 @@ mod tests {
     }
 
     #[test]
+    fn arrays_have_numbers_of_each_frame() {
+        let shape = |shape: &str, count, frames| {
+            let header = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': {shape}, }}");
+            let size = (header.len() as u32).to_le_bytes();
+            let bytes = [MAGIC, &[2, 0], &size, header.as_bytes()].concat();
+            let array = Array::open(Cursor::new(bytes), Transpose::ToRows { count, frames });
+            array.map(|array| (array.frames(), array.count(), array.columns()))
+        };
+        assert_eq!(shape("(2, 5)", 5, 2), Ok((2, 5, 1)));
+        assert_eq!(shape("(2, 20000)", 20_000, 2), Ok((2, 20_000, 1)));
+        assert_eq!(shape("(2, 5)", 5, 1), Ok((1, 5, 2)));
+        assert_eq!(shape("(3, 5)", 5, 2), Ok((1, 5, 3)));
+        assert_eq!(shape("(2, 2)", 2, 2), Ok((1, 2, 2)));
+        assert_eq!(shape("(2, 5, 3)", 5, 2), Ok((2, 5, 3)));
+        assert_eq!(shape("(5,)", 5, 2), Ok((1, 5, 1)));
+    }
+
+    #[test]
     fn arrays_of_columns_are_transposed() {
         for (transpose, rows, columns, expected) in [
             (Transpose::Never, 3, 9, false),
@@ -257,10 +300,10 @@ mod tests {
             (Transpose::ToPositions, 4, 2, true),
             (Transpose::ToPositions, 4, 3, false),
             (Transpose::ToPositions, 5, 9, false),
-            (Transpose::ToRows(9), 3, 9, true),
-            (Transpose::ToRows(9), 9, 9, false),
-            (Transpose::ToRows(9), 9, 3, false),
-            (Transpose::ToRows(9), 3, 8, false),
+            (Transpose::ToRows { count: 9, frames: 1 }, 3, 9, true),
+            (Transpose::ToRows { count: 9, frames: 1 }, 9, 9, false),
+            (Transpose::ToRows { count: 9, frames: 1 }, 9, 3, false),
+            (Transpose::ToRows { count: 9, frames: 1 }, 3, 8, false),
         ] {
             assert_eq!(
                 transpose.applies(rows, columns),

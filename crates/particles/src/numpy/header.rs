@@ -1,9 +1,16 @@
 //! Parses the header of an array: the type of its elements, its shape and order.
 
+use crate::options::component_names;
 use crate::scalar::{Order, Scalar};
 
 /// Maximum length of a row with texts, in bytes.
 pub(super) const ROW: usize = 1 << 24;
+
+/// Maximum number of columns of an array.
+pub(super) const COLUMNS: usize = 10_000;
+
+/// Maximum depth of structures in structures.
+const DEPTH: usize = 8;
 
 /// A number or text in each row.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,29 +84,107 @@ pub(super) fn fields(header: &str) -> Result<(Vec<Field>, bool), String> {
         let name = descr.split('\'').nth(1).unwrap_or_default();
         return Ok((vec![field("", name)?], false));
     }
-    let list = descr.split_once(']').map_or(descr, |(list, _)| list);
+    let mut descr = Descr { rest: descr };
     let mut fields = Vec::new();
-    for tuple in list.split('(').skip(1) {
-        let mut quoted = tuple.split('\'');
-        let (Some(name), Some(kind)) = (quoted.nth(1), quoted.nth(1)) else {
-            return Err(format!("has columns of a type that is not read: {}", list.trim()));
-        };
-        fields.push(field(name, kind)?);
-    }
-    // Parentheses within a tuple are subarrays.
-    if list.contains("((")
-        || list.contains(", (") && list.matches('(').count() != list.matches("('").count()
-    {
-        return Err("has columns that hold arrays".to_owned());
-    }
+    descr.list("", 0, &mut fields)?;
     Ok((fields, true))
+}
+
+/// The description of a structured type: a list of names and types, as Python writes it.
+struct Descr<'h> {
+    rest: &'h str,
+}
+
+impl<'h> Descr<'h> {
+    /// Takes a mark, if it is next.
+    fn has(&mut self, mark: char) -> bool {
+        let rest = self.rest.trim_start().strip_prefix(mark);
+        self.rest = rest.unwrap_or(self.rest);
+        rest.is_some()
+    }
+
+    /// Takes a mark that must be next.
+    fn need(&mut self, mark: char) -> Result<(), String> {
+        let rest: String = self.rest.chars().take(40).collect();
+        let wrong = || format!("has columns of a type that is not read: {rest}");
+        self.has(mark).then_some(()).ok_or_else(wrong)
+    }
+
+    fn text(&mut self) -> Result<&'h str, String> {
+        self.need('\'')?;
+        let (text, rest) = self.rest.split_once('\'').unwrap_or((self.rest, ""));
+        self.rest = rest;
+        Ok(text)
+    }
+
+    /// Takes the name of a field; a title may precede it.
+    fn name(&mut self) -> Result<&'h str, String> {
+        if !self.has('(') {
+            return self.text();
+        }
+        self.text()?;
+        self.need(',')?;
+        let name = self.text()?;
+        self.need(')')?;
+        Ok(name)
+    }
+
+    /// Takes the shape of an array in a field. Returns its number of elements.
+    fn shape(&mut self) -> Result<usize, String> {
+        self.need('(')?;
+        let (numbers, rest) = self.rest.split_once(')').unwrap_or((self.rest, ""));
+        self.rest = rest;
+        let mut numbers = numbers.split(',').map(str::trim).filter(|number| !number.is_empty());
+        let count =
+            numbers.try_fold(1_usize, |count, number| count.checked_mul(number.parse().ok()?));
+        count.ok_or_else(|| format!("has columns of arrays of {COLUMNS} numbers or more"))
+    }
+
+    /// Takes a list of fields. Those of structures in them have the names of both, and arrays one for each element.
+    fn list(&mut self, outer: &str, depth: usize, fields: &mut Vec<Field>) -> Result<(), String> {
+        self.need('[')?;
+        if depth > DEPTH {
+            return Err(format!("has structures within more than {DEPTH} others"));
+        }
+        while self.has('(') {
+            let name = self.name()?;
+            let name = if outer.is_empty() { name.to_owned() } else { format!("{outer}_{name}") };
+            self.need(',')?;
+            let mut inner = Vec::new();
+            if self.rest.trim_start().starts_with('[') {
+                self.list(&name, depth + 1, &mut inner)?;
+            } else {
+                inner.push(field(&name, self.text()?)?);
+            }
+            let count = if self.has(',') && self.rest.trim_start().starts_with('(') {
+                self.shape()?
+            } else {
+                1
+            };
+            if inner.len().saturating_mul(count) > COLUMNS - fields.len() {
+                return Err(format!("has more than {COLUMNS} columns"));
+            }
+            match &inner[..] {
+                // Names of elements are those of columns of an array.
+                [only] => fields.extend(
+                    component_names(&name, count)
+                        .into_iter()
+                        .map(|name| Field { name, ..only.clone() }),
+                ),
+                _ => (0..count).for_each(|_| fields.extend_from_slice(&inner)),
+            }
+            self.need(')')?;
+            self.has(',');
+        }
+        self.need(']')
+    }
 }
 
 /// Parses a type such as `<f4`.
 fn field(name: &str, kind: &str) -> Result<Field, String> {
     let unknown = || {
         format!(
-            "has numbers of the type `{kind}`, but types are f4, f8, i1 to i8, u1 to u8, S and U"
+            "has numbers of the type `{kind}`, but types are f2 to f8, i1 to i8, u1 to u8, S and U"
         )
     };
     let named = |kind: Item| Field { name: name.to_owned(), kind };
@@ -118,12 +203,14 @@ fn field(name: &str, kind: &str) -> Result<Field, String> {
         "u4" => Scalar::U32,
         "i8" => Scalar::I64,
         "u8" => Scalar::U64,
+        "f2" => Scalar::F16,
         "f4" => Scalar::F32,
         "f8" => Scalar::F64,
         other => {
             let length = |count: &str| count.parse().ok().filter(|count| (1..=ROW).contains(count));
             let text = other.split_at_checked(1).and_then(|(kind, count)| match kind {
-                "S" => Some(Item::Bytes(length(count)?)),
+                // Padding of a structure is a column without a name.
+                "S" | "V" => Some(Item::Bytes(length(count)?)),
                 "U" => Some(Item::Letters(length(count)?, order)),
                 _ => None,
             });
@@ -153,6 +240,34 @@ mod tests {
         for kind in ["<c16", "|O", "<U", "|S0", "<U99999999", "|S1\u{e4}", "", "f4"] {
             assert!(field("", kind).is_err(), "{kind}");
         }
-        assert!(fields("{'descr': [('p', '<f8', (3,))]}").is_err());
+    }
+
+    #[test]
+    fn structures_and_arrays_in_fields_are_columns() {
+        let names = |descr: &str| {
+            let fields = fields(&format!("{{'descr': {descr}, 'shape': (2,)}}"));
+            fields.map(|(fields, _)| fields.into_iter().map(|field| field.name).collect::<Vec<_>>())
+        };
+        for (descr, expected) in [
+            ("[('pos', '<f8', (3,)), ('id', '<i4')]", &["pos_x", "pos_y", "pos_z", "id"][..]),
+            ("[('q', '<f2', (2, 2)), ('r', '<f4', ()), ]", &["q_1", "q_2", "q_3", "q_4", "r"]),
+            ("[('pos', [('x', '<f8'), ('y', '<f8')]), ('', '|V4')]", &["pos_x", "pos_y", ""]),
+            ("[(('a title', 'r'), '<f4')]", &["r"]),
+            ("[]", &[]),
+        ] {
+            assert_eq!(names(descr).expect("fields"), expected, "{descr}");
+        }
+        for wrong in [
+            "[('p', '<f8', (3))",
+            "[('p', '|O')]",
+            "[('p' '<f8')]",
+            "[('p', '<f8', (10001,))]",
+            "[('p', '<f8', (99999999999, 99999999999))]",
+            "[(",
+            "['p']",
+            &"[('p', ".repeat(20),
+        ] {
+            assert!(names(wrong).is_err(), "{wrong}");
+        }
     }
 }

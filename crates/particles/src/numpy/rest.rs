@@ -22,12 +22,19 @@ impl Npz {
         let mut unused = Vec::new();
         for name in self.names().into_iter().filter(|name| !used.contains(name)) {
             let is = |names: &[&str]| names.iter().any(|own| own.eq_ignore_ascii_case(&name));
-            let transpose = if is(&CELLS) { Transpose::Never } else { Transpose::ToRows(count) };
+            let transpose = if is(&CELLS) { Transpose::Never } else { self.to_rows(frame.len()) };
             let Some([rows, columns]) = self.shape(&name, transpose) else {
                 unused.push(name);
                 continue;
             };
-            if is(&CELLS) && frame.cell.is_none() && rows.saturating_mul(columns) <= 9 {
+            if is(&CELLS) && frame.cell.is_none() && self.has_row_for_each_frame([rows, columns]) {
+                let values = self.numbers(&name)?;
+                let row = values.chunks_exact(columns as usize).nth(self.frame_number());
+                frame.cell = row.and_then(|row| cell([columns, 1], row, frame));
+                if frame.cell.is_none() {
+                    unused.push(name);
+                }
+            } else if is(&CELLS) && frame.cell.is_none() && rows.saturating_mul(columns) <= 9 {
                 let values = self.numbers(&name)?;
                 frame.cell = cell([rows, columns], &values, frame);
                 if frame.cell.is_none() {
@@ -52,7 +59,8 @@ fn cell(shape: [u64; 2], values: &[f64], frame: &ParticleFrame) -> Option<Cell> 
     let vector = |at: usize| DVec3::from_slice(&values[at..at + 3]);
     let diagonal =
         |lengths: DVec3| [DVec3::X * lengths.x, DVec3::Y * lengths.y, DVec3::Z * lengths.z];
-    let at_corner = |vectors, origin| Cell { origin, vectors, periodic: [true; 3] }.checked();
+    let at_corner =
+        |vectors, origin| Cell { origin, vectors, periodic: [true; 3] }.thickened().checked();
     match (shape, values.len()) {
         ([6, 1] | [1, 6], 6) if values[3..].iter().all(|angle| *angle > LEAST_ANGLE) => {
             let [a, b, c] = vector(0).to_array();
@@ -126,11 +134,9 @@ mod tests {
             assert_eq!(cell.origin, DVec3::new(1.0, 2.0, 3.0));
             assert_eq!(cell.cartesian([1.0; 3]), DVec3::new(5.0, 7.0, 9.0));
         }
-        for (shape, values) in [
-            ([6, 1], &[0.0; 6][..]),
-            ([4, 1], &[1.0; 4]),
-            ([3, 1], &[f64::NAN; 3]),
-        ] {
+        for (shape, values) in
+            [([6, 1], &[0.0; 6][..]), ([4, 1], &[1.0; 4]), ([3, 1], &[f64::NAN; 3])]
+        {
             assert_eq!(of(shape, values, 1.0), None, "{values:?}");
         }
     }
