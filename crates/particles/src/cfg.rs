@@ -3,8 +3,12 @@
 
 use crate::schema::{Schema, Slot};
 use crate::{
-    Cell, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
-    frame_reader::FrameReader, lines::Lines, number, source::Source,
+    Cell, FileError, Format, LengthUnit, ParticleFrame, ReadOptions,
+    builder::Builder,
+    frame_reader::FrameReader,
+    lines::{self, Lines},
+    number,
+    source::Source,
 };
 use glam::DVec3;
 use std::sync::Arc;
@@ -56,10 +60,12 @@ impl Cfg {
             entries: None,
             names: Vec::new(),
         };
+        let mut begun = false;
         while let Some(line) = self.lines.next()? {
             let text =
                 line.bytes.split(|&byte| byte == b'#').next().unwrap_or_default().trim_ascii();
-            if text.is_empty() {
+            begun |= text.starts_with(FIRST);
+            if text.is_empty() || !begun {
                 continue;
             }
             if text == b".NO_VELOCITY." {
@@ -154,6 +160,7 @@ impl FrameReader for Cfg {
 /// Returns whether a file with this head is CFG.
 pub(crate) fn is_cfg(head: &[u8]) -> bool {
     let lines = head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
-    let mut lines = lines.filter(|line| !line.is_empty() && !line.starts_with(b"#"));
-    lines.next().is_some_and(|line| line.starts_with(FIRST) && line.contains(&b'='))
+    let lines = lines.filter(|line| !line.is_empty() && !line.starts_with(b"#"));
+    let is_first = |line: &[u8]| line.starts_with(FIRST) && line.contains(&b'=');
+    { lines }.take(lines::FIRST).any(is_first)
 }

@@ -60,6 +60,14 @@ const RESTART: &str = "have LAMMPS write it as text: lmp -restart2data {file} {s
 const DUMP: &str = "have LAMMPS' tool write it as text: binary2txt {file}";
 const CLOUD: &str = "write it as PLY: pdal translate {file} {stem}.ply";
 const CUBE: &str = "convert it: ase convert -i cube -o extxyz {file} {stem}.xyz";
+const MOLDEN: &str = "convert it: obabel -i molden {file} -O {stem}.xyz";
+const TINKER: &str = "convert it: obabel -i txyz {file} -O {stem}.sdf";
+const MAESTRO: &str = "convert it: python3 -c \"from rdkit import Chem; \
+     Chem.MolToXYZFile(next(Chem.MaeMolSupplier('{file}', removeHs=False)), '{stem}.xyz')\"";
+const MMTF: &str = "convert it: python3 -c \"from Bio.PDB import mmcifio, mmtf; w = mmcifio.MMCIFIO(); \
+     w.set_structure(mmtf.MMTFParser.get_structure('{file}')); w.save('{stem}.cif')\"; it needs biopython and mmtf-python";
+const AIMS: &str = "convert it: ase convert -i aims -o extxyz {file} {stem}.xyz";
+const CASTEP: &str = "convert it: ase convert -i castep-cell -o extxyz {file} {stem}.xyz";
 const GROMOS: &str = "convert it: gmx editconf -f {file} -o {stem}.gro";
 const PREPARED: &str =
     "render it: spherule render {file} -o {stem}.png; or name the file that it was made of";
@@ -104,16 +112,26 @@ const FORMATS: &[(Sign, &str, &str)] = &[
     (Bytes(257, &[b"ustar"]), "a tar archive", TAR),
     (Binary(is_spreadsheet), "a workbook of a spreadsheet", SHEET),
     (Binary(is_gadget), "a snapshot of Gadget", GADGET),
-    (Binary(is_tng), "a TNG trajectory of GROMACS", TRAJECTORY),
+    (Bytes(40, &[b"GENERAL INFO\0"]), "a TNG trajectory of GROMACS", TRAJECTORY),
+    (Binary(is_mmtf), "an MMTF file", MMTF),
     (Words(&["title =", "title=", "variables =", "variables="]), "a Tecplot file", MESH),
     (Words(&["<!doctype html", "<html"]), "a web page (HTML)", PAGE),
     (Words(&["version https://git-lfs"]), "a pointer to a file that Git LFS keeps", LFS),
+    (Words(&["[molden format]"]), "a Molden file", MOLDEN),
+    (
+        Text(|t| t.first.starts_with(b"{") && has(t.bytes, "_m2io_version")),
+        "a Maestro file",
+        MAESTRO,
+    ),
     (Words(&["{", "["]), "a JSON file", JSON),
     (Text(|t| t.first.eq_ignore_ascii_case(b"begin_scene")), "a scene of Tachyon", TACHYON),
     (Text(|t| t.is_markup(&["<VTKFile"])), "a VTK file (XML)", MESH),
     (Text(|t| t.is_markup(&["<cml", "xml-cml"])), "a CML file", MOLECULES),
     (Words(&["<"]), "an XML file", XML),
     (Text(|text| is_cube(&text.lines)), "a cube file of Gaussian", CUBE),
+    (Text(|text| is_tinker(&text.lines)), "an XYZ file of Tinker", TINKER),
+    (Text(|text| is_aims(&text.lines)), "a geometry of FHI-aims", AIMS),
+    (Text(|text| is_castep(&text.lines)), "a cell file of CASTEP", CASTEP),
     (Text(|text| is_charmm(&text.lines)), "a coordinate file of CHARMM (CRD)", ATOMS),
     (Text(|t| t.first == b"TITLE" && has_line(t.bytes, b"END")), "a GROMOS file (G96)", GROMOS),
     (Text(|t| t.first.starts_with(b"ZONE ") || t.first == b"ZONE"), "a Tecplot file", MESH),
@@ -205,8 +223,60 @@ fn is_gadget(head: &[u8]) -> bool {
     })
 }
 
-fn is_tng(head: &[u8]) -> bool {
-    !head.starts_with(ZIP) && head.get(..100).is_some_and(|start| has(start, "TRAJNG"))
+/// Returns whether a file is a map of `MessagePack` with keys of MMTF.
+fn is_mmtf(head: &[u8]) -> bool {
+    let is_map = matches!(head.first(), Some(0x80..=0x8F | 0xDE | 0xDF));
+    is_map
+        && ["mmtfVersion", "mmtfProducer", "groupTypeList", "xCoordList"]
+            .into_iter()
+            .any(|key| has(head, key))
+}
+
+/// Returns whether lines are the number of atoms and a title, and rows of a number, a name, a position, a type and bonds.
+fn is_tinker(lines: &[&[u8]]) -> bool {
+    let is_whole = |field: Option<&[u8]>| field.is_some_and(|field| number::whole(field).is_some());
+    let first = lines.first().copied().unwrap_or_default();
+    // The cell may be in the second line.
+    let rows = lines
+        .iter()
+        .skip(1)
+        .skip_while(|row| numbers(row).is_some_and(|numbers| numbers.len() == 6));
+    let mut rows = rows.take(2).filter(|row| !row.is_empty()).peekable();
+    is_whole(Fields::blanks(first).next())
+        && rows.peek().is_some()
+        && rows.enumerate().all(|(at, row)| {
+            let fields: Vec<&[u8]> = Fields::blanks(row).collect();
+            fields.len() >= 6
+                && number::whole(fields[0]) == Some(at as u64 + 1)
+                && number::parse(fields[1]).is_none()
+                && fields[2..5]
+                    .iter()
+                    .all(|field| field.contains(&b'.') && number::parse(field).is_some())
+                && fields[5..].iter().all(|field| is_whole(Some(*field)))
+        })
+}
+
+/// Returns whether the first line that is no comment is an atom or a lattice vector of FHI-aims.
+fn is_aims(lines: &[&[u8]]) -> bool {
+    let first = lines.iter().find(|line| !line.is_empty() && !line.starts_with(b"#"));
+    let fields: Vec<&[u8]> = Fields::blanks(first.copied().unwrap_or_default()).collect();
+    let is_place = fields
+        .get(1..4)
+        .is_some_and(|place| place.iter().all(|field| number::parse(field).is_some()));
+    is_place
+        && match fields[0] {
+            b"lattice_vector" => fields.len() == 4,
+            b"atom" | b"atom_frac" => fields.len() == 5 && number::parse(fields[4]).is_none(),
+            _ => false,
+        }
+}
+
+/// Returns whether a line begins a block of a lattice or of positions.
+fn is_castep(lines: &[&[u8]]) -> bool {
+    lines.iter().any(|line| {
+        let line = line.to_ascii_lowercase();
+        line.starts_with(b"%block lattice_") || line.starts_with(b"%block positions_")
+    })
 }
 
 /// Returns whether any line starts with this text.
@@ -281,6 +351,8 @@ mod tests {
                 b"# vtk DataFile Version 5.1\nx\nBINARY\n\0\0".to_vec(),
                 ["VTK", "meshio.read('run.bin')"],
             ),
+            ([&[0; 40][..], b"GENERAL INFO\0", &[0; 60]].concat(), ["TNG", "trjconv -f run.bin"]),
+            (b"\xDE\0\x26\xADgroupTypeList\0".to_vec(), ["MMTF", "get_structure('run.bin')"]),
             (b"PAR1\0\0".to_vec(), ["Parquet", "read_parquet('run.bin')"]),
             (b"spherule-prepared\n\0".to_vec(), ["prepared", "render run.bin -o run.png"]),
             (b"spherule-checkpoint\n\0".to_vec(), ["a checkpoint", "--resume run.bin"]),
@@ -309,6 +381,17 @@ mod tests {
             ("TITLE = \"a\"\nVARIABLES = \"x\"\n", ["Tecplot", "meshio"]),
             ("TITLE\nwater\nEND\nPOSITION\n", ["G96", "gmx editconf -f in.txt"]),
             ("mtllib a\nv 1 2 3\n", ["OBJ", "awk"]),
+            ("[Molden Format]\n[Atoms] Angs\n", ["Molden", "-i molden in.txt"]),
+            ("{\n  s_m_m2io_version\n  :::\n  2.0.0\n}\n", ["Maestro", "rdkit"]),
+            ("{ \"x\": [1] }\n", ["JSON", "pandas"]),
+            (" 1 water\n 1 O 0.0 0.0 0.1 6\n", ["Tinker", "-i txyz"]),
+            (
+                "2\n 5.0 5.0 5.0 90.0 90.0 90.0\n1 O 0.0 0.0 0.1 6 2\n2 H 0.0 0.0 1.1 21 1\n",
+                ["Tinker", "txyz"],
+            ),
+            ("# made up\nlattice_vector 5 0 0\n", ["aims", "-i aims"]),
+            ("atom 0 0 0.1 O\n", ["aims", "-i aims"]),
+            ("# x\n\n%BLOCK LATTICE_CART\n5 0 0\n", ["CASTEP", "-i castep-cell"]),
             ("<html>", ["web page", "curl"]),
         ] {
             let found = named(content.as_bytes(), "in.txt");
@@ -334,6 +417,10 @@ mod tests {
             "x y z\n1 2 3\n",
             "molecules,x,y,z\n1,2,3,4\n",
             "atoms x y z\nC 0 0 0\n",
+            "2\n\nC 0.0 0.0 0.0\nO 1.2 0.0 0.0\n",
+            "1\n1 C 0.0 0.0 0.0\n1 2.0 3.0 4.0\n",
+            "atom 0 0 0 1\n",
+            "% a comment\n1 2 3\n",
         ] {
             assert_eq!(named(content.as_bytes(), "a.txt"), "", "{content}");
         }

@@ -29,15 +29,21 @@ pub(crate) enum Sign {
 pub(crate) struct Row {
     pub(crate) format: Format,
     pub(crate) sign: Sign,
+    /// Ends of names of files after the last point, in lower case, or whole names: they tell the format if the content does not.
+    pub(crate) suffixes: &'static [&'static str],
     pub(crate) open: Open,
 }
 
 /// Makes a row; the reader is an expression that may return early with an error.
 macro_rules! row {
     ($format:ident, $sign:expr, |$source:ident, $options:ident| $reader:expr) => {
+        row!($format, $sign, &[], |$source, $options| $reader)
+    };
+    ($format:ident, $sign:expr, $suffixes:expr, |$source:ident, $options:ident| $reader:expr) => {
         Row {
             format: Format::$format,
             sign: $sign,
+            suffixes: $suffixes,
             open: |$source, $options| Ok(Box::new($reader)),
         }
     };
@@ -47,15 +53,21 @@ use Sign::{Signature, Structure, Words};
 
 /// All formats.
 pub(crate) const ROWS: [Row; 29] = [
-    row!(Xyzr, Words, |source, options| text::Rows::new(source, options)),
-    row!(Csv, Words, |source, options| csv::Csv::new(source, options)),
-    row!(Xyz, Words, |source, options| xyz::Xyz::new(source, options)),
-    row!(LammpsDump, Words, |source, options| lammps::Dump::new(source, options)),
-    row!(LammpsData, Words, |source, options| lammps::Data::new(source, options)),
-    row!(Gro, Words, |source, options| gro::Gro::new(source, options)),
-    row!(Pdb, Words, |source, options| pdb::Pdb::new(source, options)),
-    row!(MmCif, Words, |source, options| cif::MmCif::new(Format::MmCif, source, options)),
-    row!(Cif, Words, |source, options| cif::Crystal::new(source, options)),
+    row!(Xyzr, Words, &["xyzr"], |source, options| text::Rows::new(source, options)),
+    row!(Csv, Words, &["csv", "tsv"], |source, options| csv::Csv::new(source, options)),
+    row!(Xyz, Words, &["xyz", "extxyz"], |source, options| xyz::Xyz::new(source, options)),
+    row!(LammpsDump, Words, &["dump", "lammpstrj"], |source, options| lammps::Dump::new(
+        source, options
+    )),
+    row!(LammpsData, Words, &["data", "lmp", "lammps"], |source, options| lammps::Data::new(
+        source, options
+    )),
+    row!(Gro, Words, &["gro"], |source, options| gro::Gro::new(source, options)),
+    row!(Pdb, Words, &["pdb", "ent"], |source, options| pdb::Pdb::new(source, options)),
+    row!(MmCif, Words, &["mmcif"], |source, options| cif::MmCif::new(
+        Format::MmCif, source, options
+    )),
+    row!(Cif, Words, &["cif"], |source, options| cif::Crystal::new(source, options)),
     row!(Gsd, Signature(|head| head.starts_with(&gsd::MAGIC)), |source, options| {
         gsd::Gsd::new(source, options)?
     }),
@@ -77,27 +89,34 @@ pub(crate) const ROWS: [Row; 29] = [
     row!(Hdf5, Signature(|head| head.starts_with(hdf5::MAGIC)), |source, options| {
         hdf5::Hdf5::new(source, options)?
     }),
-    row!(Pqr, Words, |source, options| pqr::Pqr::new(source, options)),
-    row!(Poscar, Structure(poscar::is_poscar), |source, options| poscar::Poscar::new(
+    row!(Pqr, Words, &["pqr"], |source, options| pqr::Pqr::new(source, options)),
+    row!(
+        Poscar,
+        Structure(poscar::is_poscar),
+        &["poscar", "contcar", "xdatcar", "vasp"],
+        |source, options| poscar::Poscar::new(source, options)
+    ),
+    row!(Sdf, Structure(molfile::is_molfile), &["sdf", "mol"], |source, options| {
+        molfile::Molfile::new(source, options)
+    }),
+    row!(Mol2, Structure(mol2::is_mol2), &["mol2"], |source, options| mol2::Mol2::new(
         source, options
     )),
-    row!(Sdf, Structure(molfile::is_molfile), |source, options| molfile::Molfile::new(
+    row!(Xsf, Structure(xsf::is_xsf), &["xsf", "axsf"], |source, options| xsf::Xsf::new(
         source, options
     )),
-    row!(Mol2, Structure(mol2::is_mol2), |source, options| mol2::Mol2::new(source, options)),
-    row!(Xsf, Structure(xsf::is_xsf), |source, options| xsf::Xsf::new(source, options)),
-    row!(Cfg, Structure(cfg::is_cfg), |source, options| cfg::Cfg::new(source, options)),
-    row!(Psf, Structure(psf::is_psf), |source, options| psf::Psf::new(source, options)),
-    row!(Prmtop, Structure(amber::is_prmtop), |source, options| amber::Prmtop::new(
-        source, options
-    )),
-    row!(Restart, Structure(amber::is_restart), |source, options| amber::Restart::new(
-        source, options
-    )),
-    row!(AseTrajectory, Signature(ase::is_trajectory), |source, options| {
+    row!(Cfg, Structure(cfg::is_cfg), &["cfg"], |source, options| cfg::Cfg::new(source, options)),
+    row!(Psf, Structure(psf::is_psf), &["psf"], |source, options| psf::Psf::new(source, options)),
+    row!(Prmtop, Structure(amber::is_prmtop), &["prmtop", "parm7"], |source, options| {
+        amber::Prmtop::new(source, options)
+    }),
+    row!(Restart, Structure(amber::is_restart), &["rst7", "inpcrd"], |source, options| {
+        amber::Restart::new(source, options)
+    }),
+    row!(AseTrajectory, Signature(ase::is_trajectory), &[], |source, options| {
         ase::Trajectory::new(source, options)?
     }),
-    row!(BinaryCif, Signature(cif::is_binary), |source, options| cif::MmCif::new(
+    row!(BinaryCif, Signature(cif::is_binary), &[], |source, options| cif::MmCif::new(
         Format::BinaryCif,
         cif::decoded(source)?,
         options

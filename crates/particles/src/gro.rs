@@ -219,12 +219,9 @@ impl FrameReader for Gro {
 /// Returns whether these are the second and third line of a GRO file.
 pub(crate) fn is_gro(second: &[u8], third: &[u8]) -> bool {
     let count = number::whole(second).is_some();
-    // Numbers of residues may be negative.
-    let number = |field: &[u8]| {
-        let field = field.trim_ascii();
-        number::whole(field.strip_prefix(b"-").unwrap_or(field)).is_some()
-    };
-    let residue = third.get(..5).is_some_and(number);
+    let residue = third.get(..5).map(<[u8]>::trim_ascii);
+    let residue = residue.map(|field| field.strip_prefix(b"-").unwrap_or(field));
+    let residue = residue.is_some_and(|field| number::whole(field).is_some());
     let width = third.get(POSITION..).and_then(|positions| {
         let mut points = memchr_iter(b'.', positions);
         let first = points.next()?;

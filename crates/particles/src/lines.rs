@@ -1,4 +1,4 @@
-//! Splits a text file into lines, in large blocks.
+//! Splits a text file into lines, in large blocks. Lines end with LF, CR LF, or CR alone, mixed as they may be.
 
 pub(crate) use super::line::Line;
 use crate::{FileError, source::Source};
@@ -11,6 +11,9 @@ use std::sync::Arc;
 /// Maximum length of a line in bytes: a longer one indicates that the file is not text.
 pub(crate) const LONGEST: usize = 1 << 20;
 
+/// Number of lines at the beginning of a file of which any may tell its format.
+pub(crate) const FIRST: usize = 1000;
+
 /// Bytes per read; an incomplete line moves to the front of the buffer before each read.
 const BLOCK: usize = 1 << 18;
 
@@ -22,6 +25,8 @@ pub(crate) struct Lines {
     buffer: Vec<u8>,
     start: usize,
     end: usize,
+    /// Offset up to which lone carriage returns are newlines: those at the end wait for the byte after them.
+    settled: usize,
     ended: bool,
     number: usize,
     /// Offset of the last line; `returned` is true if it ended with a carriage return.
@@ -35,6 +40,7 @@ impl Lines {
         if head.starts_with(b"\xEF\xBB\xBF") {
             head.drain(..3);
         }
+        let settled = end_lines(&mut head);
         let end = head.len();
         Self {
             path,
@@ -42,6 +48,7 @@ impl Lines {
             buffer: head,
             start: 0,
             end,
+            settled,
             ended: false,
             number: 0,
             last: 0,
@@ -152,7 +159,7 @@ impl Lines {
                 self.start = line.end + 1;
                 return Ok(Some(line));
             }
-            looked = rest.len();
+            looked = self.settled.saturating_sub(self.start);
             if !self.fill()? {
                 let line = self.start..self.end;
                 self.start = self.end;
@@ -172,6 +179,7 @@ impl Lines {
                 .with_help("a file of particles has one line for each particle"));
         }
         self.buffer.copy_within(self.start..self.end, 0);
+        self.settled = self.settled.saturating_sub(self.start);
         (self.start, self.end) = (0, self.end - self.start);
         if self.buffer.len() < self.end + BLOCK {
             self.buffer.resize(self.end + BLOCK, 0);
@@ -183,6 +191,7 @@ impl Lines {
             }
         };
         self.end += length;
+        self.settled += end_lines(&mut self.buffer[self.settled..self.end]);
         self.ended = length == 0;
         Ok(!self.ended)
     }
@@ -202,6 +211,22 @@ impl Lines {
     pub(crate) fn path(&self) -> &Arc<Path> {
         &self.path
     }
+}
+
+/// Makes newlines of the carriage returns that end lines by themselves, as on the first Macintosh. Those before a newline belong
+/// to it. Returns the offset of those at the end, which the next byte decides, or else the length.
+pub(crate) fn end_lines(text: &mut [u8]) -> usize {
+    let mut at = 0;
+    while let Some(found) = memchr(b'\r', &text[at..]) {
+        let first = at + found;
+        at = first + text[first..].iter().take_while(|&&byte| byte == b'\r').count();
+        match text.get(at) {
+            None => return first,
+            Some(b'\n') => (),
+            Some(_) => text[first..at].fill(b'\n'),
+        }
+    }
+    text.len()
 }
 
 #[cfg(test)]
@@ -239,6 +264,33 @@ mod tests {
             let expected = ["a", "", "bcd", "\u{e4}", "last"].map(str::to_owned);
             assert_eq!(all, (1..).zip(expected).collect::<Vec<_>>(), "{drop}");
             assert!(lines.next().expect("no fault").is_none());
+        }
+    }
+
+    #[test]
+    fn carriage_returns_alone_end_lines() {
+        for (text, expected) in [
+            ("a\rb\r", &["a", "b"][..]),
+            ("a\r\rb", &["a", "", "b"]),
+            ("a\nb\rc\r\nd", &["a", "b", "c", "d"]),
+            // Those of a newline that was converted twice belong to it.
+            ("a\r\r\nb\r\r\r\n", &["a\r", "b\r\r"]),
+            ("\r\ra", &["", "", "a"]),
+        ] {
+            for drop in 1..9 {
+                let mut read = lines(text, drop);
+                let mut all = Vec::new();
+                while let Some(line) = read.next().expect("lines") {
+                    all.push(line.text().into_owned());
+                }
+                assert_eq!(all, expected, "{drop} {text:?}");
+                let mut skipped = lines(text, drop);
+                assert_eq!(
+                    skipped.skip(9).expect("lines"),
+                    expected.len() as u64,
+                    "{drop} {text:?}"
+                );
+            }
         }
     }
 

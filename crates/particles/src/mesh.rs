@@ -33,7 +33,7 @@ pub fn read_mesh(path: &Path) -> Result<Mesh, FileError> {
         let error = FileError::whole_file(path, "is no PLY file");
         return Err(error.with_help("meshes are read from PLY files with faces"));
     }
-    let header = Header::read(&source.path, &source.head)?;
+    let header = Header::read(&mut source)?;
     let mut mesh = Mesh::default();
     match header.order {
         None => {
@@ -98,7 +98,9 @@ impl Mesh {
                 values.clear();
                 next(element, row, &mut values)?;
                 if at == vertices {
-                    self.vertices.push(DVec3::from(axes.map(|axis| values[axis])));
+                    self.vertices.push(DVec3::from(
+                        axes.map(|axis| values[place_of(element, &values, axis)]),
+                    ));
                 } else if at == faces {
                     let corners = list(element, &values, indices);
                     let count = elements[vertices].count;
@@ -118,13 +120,16 @@ impl Mesh {
     }
 }
 
+/// Returns the place of a property among the values of a row: that of its length, if it is a list.
+fn place_of(element: &Element, values: &[f64], property: usize) -> usize {
+    element.properties[..property].iter().fold(0, |place, own| {
+        place + if own.list.is_some() { 1 + values[place] as usize } else { 1 }
+    })
+}
+
 /// The numbers of a list among the values of a row.
 fn list<'a>(element: &Element, values: &'a [f64], property: usize) -> &'a [f64] {
-    let mut rest = values;
-    for own in &element.properties[..property] {
-        let length = if own.list.is_some() { 1 + rest[0] as usize } else { 1 };
-        rest = &rest[length..];
-    }
+    let rest = &values[place_of(element, values, property)..];
     &rest[1..=rest[0] as usize]
 }
 

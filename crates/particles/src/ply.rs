@@ -3,13 +3,14 @@
 //! The crates `ply-rs` and `ply-rs-bw` aren't used: they store a map of values for each vertex. This
 //! reader stores the vertices in columns, and ignores the elements after them.
 
-use crate::lines::{Line, Lines};
+use crate::lines::{self, Line, Lines};
 use crate::scalar::{Order, Scalar};
 use crate::schema::{Schema, Slot};
 use crate::{
     FileError, Format, ParticleFrame, ReadOptions, builder::Builder, fields::Fields,
     frame_reader::FrameReader, source::Source, srgb::linear_from_srgb, undrawn::Undrawn,
 };
+use memchr::memmem;
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::Path;
 use std::sync::Arc;
@@ -66,12 +67,20 @@ fn scalar(name: &[u8]) -> Option<Scalar> {
 }
 
 impl Header {
-    pub(crate) fn read(path: &Arc<Path>, head: &[u8]) -> Result<Self, FileError> {
+    /// Reads the header of a file; lines of a text then end with newlines.
+    pub(crate) fn read(source: &mut Source) -> Result<Self, FileError> {
+        // Data of binary files may hold the bytes of line ends.
+        if memmem::find(&source.head, b"format ascii").is_some() {
+            lines::end_lines(&mut source.head);
+        }
+        let (path, head) = (&source.path, &source.head[..]);
+        let returns = head.starts_with(b"ply\r") && head.get(4) != Some(&b'\n');
+        let ending = if returns { b'\r' } else { b'\n' };
         let (order, elements, title) = (None, Vec::new(), String::new());
         let mut header = Self { order, elements, title, lines: 0, end: 0 };
         loop {
             let rest = &head[header.end..];
-            let Some(length) = memchr::memchr(b'\n', rest) else {
+            let Some(length) = memchr::memchr(ending, rest) else {
                 let message = "the header does not end: no line is `end_header`";
                 return Err(FileError::whole_file(path, message).with_help("the file is cut off"));
             };
@@ -127,10 +136,6 @@ impl Header {
     ) -> Result<(), FileError> {
         let element = self.elements.last_mut();
         let element = element.ok_or_else(|| line.whole("a property before any element"))?;
-        if list.is_some() && element.name == "vertex" {
-            let help = "write the vertices without it";
-            return Err(line.whole("a list in each vertex is not read").with_help(help));
-        }
         element.properties.push(Property { name, scalar, list });
         Ok(())
     }
@@ -140,12 +145,14 @@ impl FrameReader for Ply {
     fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
         let Some(mut source) = self.source.take() else { return Ok(None) };
         let path = source.path.clone();
-        let header = Header::read(&path, &source.head)?;
+        let header = Header::read(&mut source)?;
         let fault = |message: String| FileError::whole_file(&path, message);
         let place = header.elements.iter().position(|element| element.name == "vertex");
         let place = place.ok_or_else(|| fault("has no vertices".to_owned()))?;
         let (before, vertex) = (&header.elements[..place], &header.elements[place]);
-        let names = vertex.properties.iter().map(|property| property.name.clone()).collect();
+        // Lists are passed over.
+        let columns = vertex.properties.iter().filter(|property| property.list.is_none());
+        let names = columns.map(|property| property.name.clone()).collect();
         let schema = Arc::new(Schema::new(names, &self.options).map_err(fault)?);
         let mut builder = Builder::new(&path, Format::Ply, &schema);
         match header.order {
@@ -189,11 +196,20 @@ fn text(lines: &mut Lines, vertex: &Element, builder: &mut Builder) -> Result<()
     for row in 0..vertex.count {
         let line = lines.row(row, vertex.count, "vertices", "the file is cut off")?;
         let mut fields = Fields::blanks(line.bytes);
-        for (slot, property) in schema.slots.iter().zip(&vertex.properties) {
-            let Some(field) = fields.next() else {
-                let message = format!("a vertex has {} numbers", vertex.properties.len());
-                return Err(line.whole(message));
-            };
+        let mut slots = schema.slots.iter().peekable();
+        for property in &vertex.properties {
+            if slots.peek().is_none() {
+                break;
+            }
+            let too_few =
+                || line.whole(format!("a vertex has {} numbers", vertex.properties.len()));
+            let field = fields.next().ok_or_else(too_few)?;
+            if property.list.is_some() {
+                (0..line.whole_number(field)?)
+                    .try_for_each(|_| fields.next().map(drop).ok_or_else(too_few))?;
+                continue;
+            }
+            let Some(slot) = slots.next() else { break };
             match slot {
                 Slot::Color(_) => {
                     let value = line.number(field)?;
@@ -228,15 +244,17 @@ impl<R: BufRead> Binary<'_, R> {
         // Elements without properties have no bytes in the file, whatever their count.
         let count = if element.properties.is_empty() { 0 } else { element.count };
         for _ in 0..count {
-            for property in &element.properties {
-                let items = match property.list {
-                    Some(kind) => self.number(kind)?.max(0.0) as u64,
-                    None => 1,
-                };
-                self.pass(items.saturating_mul(property.scalar.size() as u64))?;
-            }
+            element.properties.iter().try_for_each(|property| self.skip_property(property))?;
         }
         Ok(())
+    }
+
+    fn skip_property(&mut self, property: &Property) -> Result<(), FileError> {
+        let items = match property.list {
+            Some(kind) => self.number(kind)?.max(0.0) as u64,
+            None => 1,
+        };
+        self.pass(items.saturating_mul(property.scalar.size() as u64))
     }
 
     /// Reads a number.
@@ -258,6 +276,9 @@ impl<R: BufRead> Binary<'_, R> {
 
     fn vertices(&mut self, vertex: &Element, builder: &mut Builder) -> Result<(), FileError> {
         let schema = builder.schema().clone();
+        if vertex.properties.iter().any(|property| property.list.is_some()) {
+            return self.vertices_with_lists(vertex, builder);
+        }
         let sizes = vertex.properties.iter().map(|property| property.scalar.size());
         let mut row = vec![0; sizes.sum()];
         for _ in 0..vertex.count {
@@ -266,9 +287,31 @@ impl<R: BufRead> Binary<'_, R> {
             for (slot, property) in schema.slots.iter().zip(&vertex.properties) {
                 let value = property.scalar.read(&row[at..], self.order);
                 at += property.scalar.size();
-                let is_color = matches!(slot, Slot::Color(_));
-                let value = if is_color { channel(property.scalar, value) } else { value };
-                builder.put_number(*slot, value);
+                put(builder, *slot, property, value);
+            }
+            builder.end_row()?;
+        }
+        Ok(())
+    }
+
+    /// Reads vertices of different lengths.
+    fn vertices_with_lists(
+        &mut self,
+        vertex: &Element,
+        builder: &mut Builder,
+    ) -> Result<(), FileError> {
+        let schema = builder.schema().clone();
+        for _ in 0..vertex.count {
+            let mut slots = schema.slots.iter();
+            for property in &vertex.properties {
+                if property.list.is_some() {
+                    self.skip_property(property)?;
+                    continue;
+                }
+                let value = self.number(property.scalar)?;
+                if let Some(slot) = slots.next() {
+                    put(builder, *slot, property, value);
+                }
             }
             builder.end_row()?;
         }
@@ -276,7 +319,13 @@ impl<R: BufRead> Binary<'_, R> {
     }
 }
 
+/// Adds a number of a binary file to its column.
+fn put(builder: &mut Builder, slot: Slot, property: &Property, value: f64) {
+    let is_color = matches!(slot, Slot::Color(_));
+    builder.put_number(slot, if is_color { channel(property.scalar, value) } else { value });
+}
+
 /// Returns whether a file with this head is PLY.
 pub(crate) fn is_ply(head: &[u8]) -> bool {
-    head.starts_with(b"ply\n") || head.starts_with(b"ply\r\n")
+    head.starts_with(b"ply\n") || head.starts_with(b"ply\r")
 }

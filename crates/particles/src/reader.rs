@@ -211,8 +211,8 @@ pub(crate) fn open(
     path: &Path,
     options: &ReadOptions,
 ) -> Result<(Format, Box<dyn FrameReader>), FileError> {
-    let source = Source::open(path, &options.progress)?;
-    let format = sniff::format(&source, options)?;
+    let mut source = Source::open(path, &options.progress)?;
+    let format = sniff::format(&mut source, options)?;
     let bonds = options.bonds.for_format(format);
     let reader = (formats::row(format).open)(source, &ReadOptions { bonds, ..options.clone() })?;
     Ok((format, reader))

@@ -1,11 +1,12 @@
-//! Detects the format of a file from its first bytes and lines.
+//! Detects the format of a file from its first bytes and lines, or else from its name.
 
 use crate::foreign::{self, Foreign};
 use crate::formats::{ROWS, Row, Sign, row};
 use crate::{
-    FileError, Format, ReadOptions, Role, cif, fields::Fields, gro, header, line, number, pdb, pqr,
-    source::Source, units, utf16,
+    FileError, Format, ReadOptions, Role, aliases, cif, fields::Fields, gro, header, line, lines,
+    number, pdb, pqr, source::Source, units, utf16,
 };
+use std::path::Path;
 
 /// Help that lists the formats that can be detected.
 const KNOWN: &str = "files of particles are rows of `x y z [radius]`, tables with a header that \
@@ -17,14 +18,21 @@ const KNOWN: &str = "files of particles are rows of `x y z [radius]`, tables wit
 /// Maximum number of lines before the number of atoms in a LAMMPS data file.
 const DATA_HEADER: usize = 40;
 
-/// Returns the format in the options, or else the detected one.
-pub(crate) fn format(source: &Source, options: &ReadOptions) -> Result<Format, FileError> {
-    let fault = |message: String| FileError::whole_file(&source.path, message);
+/// Suffixes of compressed files.
+const COMPRESSED: [&str; 6] = ["gz", "bgz", "bz2", "xz", "zst", "zstd"];
+
+/// The message for files without content.
+const EMPTY: &str = "holds no particles";
+
+/// Returns the format in the options, or else the detected one. Lines of the head of a text then end with newlines.
+pub(crate) fn format(source: &mut Source, options: &ReadOptions) -> Result<Format, FileError> {
+    let path = source.path.clone();
+    let fault = |message: String| FileError::whole_file(&path, message);
     let refuse = |Foreign { name, help }: Foreign| {
         fault(format!("is {name}, which is not supported")).with_help(help)
     };
     let head = &source.head[..];
-    if let Some(foreign) = foreign::binary(head, &source.path) {
+    if let Some(foreign) = foreign::binary(head, &path) {
         return Err(refuse(foreign));
     }
     if let Some(format) = binary(head) {
@@ -54,10 +62,17 @@ pub(crate) fn format(source: &Source, options: &ReadOptions) -> Result<Format, F
             None => fault("is not a text file: it holds zero bytes".to_owned()).with_help(KNOWN),
         });
     }
+    lines::end_lines(&mut source.head);
     if let Some(format) = options.format {
         return Ok(format);
     }
-    let detected = detect(head, options);
+    let mut detected = detect(&source.head, options);
+    if detected.is_err()
+        && source.extend().map_err(|error| fault(format!("cannot be read: {error}")))?
+    {
+        detected = detect(&source.head, options);
+    }
+    let head = &source.head[..];
     // Titles of these files may be any text, also signatures of other formats.
     let is_titled = |format: &Format| {
         matches!(format, Format::Gro | Format::LammpsData | Format::Poscar | Format::Sdf)
@@ -65,15 +80,27 @@ pub(crate) fn format(source: &Source, options: &ReadOptions) -> Result<Format, F
     if let Some(&format) = detected.as_ref().ok().filter(|format| is_titled(format)) {
         return Ok(format);
     }
-    if let Some(foreign) = foreign::text(head, &source.path) {
+    if let Some(foreign) = foreign::text(head, &path) {
         return Err(refuse(foreign));
     }
     // Rows of PQR look like those of PDB.
     let may_be_pqr = matches!(detected, Err(_) | Ok(Format::Pdb));
-    if may_be_pqr && pqr::is_pqr(head, &source.path) {
+    if may_be_pqr && pqr::is_pqr(head, &path) {
         return Ok(Format::Pqr);
     }
-    detected.map_err(|message| fault(message).with_help(KNOWN))
+    detected.or_else(|message| {
+        let named = if message == EMPTY { None } else { named(&path, head) };
+        named.ok_or_else(|| fault(message).with_help(KNOWN))
+    })
+}
+
+/// Returns the format that the name of a file tells, before any suffix of a compression.
+fn named(path: &Path, head: &[u8]) -> Option<Format> {
+    let name = path.file_name()?.to_str()?.to_ascii_lowercase();
+    let mut parts = name.rsplit('.').skip_while(|part| COMPRESSED.contains(part));
+    let part = parts.next()?;
+    let found = ROWS.iter().find(|row| row.suffixes.contains(&part))?.format;
+    Some(if found == Format::Cif && !cif::is_crystal(head) { Format::MmCif } else { found })
 }
 
 /// Returns the format of a text whose first lines have a structure of their own, after any title.
@@ -101,14 +128,16 @@ fn detect(head: &[u8], options: &ReadOptions) -> Result<Format, String> {
     }
     let lines = head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
     let mut lines = lines.filter(|line| !line.is_empty() && !line::is_comment(line));
-    let Some(first) = lines.next() else { return Err("holds no particles".to_owned()) };
+    let Some(first) = lines.next() else { return Err(EMPTY.to_owned()) };
     // The first line that Excel writes into some CSV files.
     let is_excel = first.starts_with(b"sep=");
     let first = if is_excel { lines.next().unwrap_or_default() } else { first };
     let second = lines.clone().next();
-    if let Some(format) = detect_keyword(first, lines) {
-        let crystal = format == Format::MmCif && cif::is_crystal(head);
-        return Ok(if crystal { Format::Cif } else { format });
+    let crystal = |format: Format| {
+        if format == Format::MmCif && cif::is_crystal(head) { Format::Cif } else { format }
+    };
+    if let Some(format) = detect_keyword(first, lines.clone()) {
+        return Ok(crystal(format));
     }
     if number::whole(first).is_some() {
         return Ok(Format::Xyz);
@@ -117,9 +146,12 @@ fn detect(head: &[u8], options: &ReadOptions) -> Result<Format, String> {
     if Fields::marks(first).take(2).all(|field| number::parse(field).is_some()) {
         return Ok(Format::Xyzr);
     }
+    if let Some(format) = lines.take(lines::FIRST).find_map(detect_record) {
+        return Ok(crystal(format));
+    }
     let x = options.columns.roles.iter().find(|(role, _)| *role == Role::X);
-    let usual = ["x", "pos_x", "position_x", "points:0"];
-    let usual: Vec<&str> = usual.into_iter().chain(x.map(|(_, name)| name.as_str())).collect();
+    let usual = aliases::usual(Role::X).iter().copied();
+    let usual: Vec<&str> = usual.chain(x.map(|(_, name)| name.as_str())).collect();
     let names = header::names(first);
     let separated = header::is_separated(first);
     let is_x = |name: &String| {
@@ -159,6 +191,31 @@ fn detect_keyword<'l>(first: &[u8], mut lines: impl Iterator<Item = &'l [u8]>) -
     // The first line of a data file may be any text.
     let data = is_count(first) || { lines }.take(DATA_HEADER).any(is_count);
     data.then_some(Format::LammpsData)
+}
+
+/// Returns the format that a line tells wherever it is, such as an atom of PDB after other records.
+fn detect_record(line: &[u8]) -> Option<Format> {
+    let number = |columns: [usize; 2]| {
+        let field = line.get(columns[0]..columns[1]).unwrap_or_default().trim_ascii();
+        field.contains(&b'.') && number::parse(field).is_some()
+    };
+    let is_atom = line.starts_with(b"ATOM  ") || line.starts_with(b"HETATM");
+    if is_atom && [[30, 38], [38, 46], [46, 54]].into_iter().all(number) {
+        return Some(Format::Pdb);
+    }
+    let mut words = Fields::blanks(line);
+    let is_block = line.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"data_"));
+    if is_block && words.clone().count() == 1 {
+        return Some(Format::MmCif);
+    }
+    let is_count = words.next().is_some_and(|count| number::whole(count).is_some())
+        && words.next() == Some(b"atoms")
+        && words.next().is_none();
+    match line {
+        b"ITEM: TIMESTEP" => Some(Format::LammpsDump),
+        b"@<TRIPOS>MOLECULE" => Some(Format::Mol2),
+        _ => is_count.then_some(Format::LammpsData),
+    }
 }
 
 #[cfg(test)]
@@ -205,6 +262,55 @@ mod tests {
                 "{other}"
             );
         }
+    }
+
+    #[test]
+    fn any_of_the_first_lines_tells_the_format() {
+        let atom =
+            "ATOM      1  N   ALA A   1       0.000   0.000  -1.000  1.00  0.00           N\n";
+        let user = "USER  MOD a b c d e f g h i j k\n";
+        for lines in [1, 2, 900] {
+            assert_eq!(detect(&(user.repeat(lines) + atom)), Ok(Format::Pdb), "{lines}");
+        }
+        assert!(detect(&(user.repeat(lines::FIRST + 1) + atom)).is_err());
+        for (text, expected) in [
+            ("written by hand\nITEM: TIMESTEP\n0\n", Format::LammpsDump),
+            ("a b\ndata_x\nloop_\n_atom_site.Cartn_x\n", Format::MmCif),
+            ("a b\ndata_x\n_cell_length_a 4\n", Format::Cif),
+            ("a b\n@<TRIPOS>MOLECULE\n", Format::Mol2),
+            (" CRYSTAL # of silicon\n PRIMVEC\n", Format::Xsf),
+            ("\tMOLECULE\n# of carbon\n\tATOMS # all\n", Format::Xsf),
+            ("BEGIN_INFO\nEND_INFO\nCRYSTAL\nPRIMVEC\nPRIMCOORD 1\n", Format::Xsf),
+            ("made by x\nNumber of particles = 8\n", Format::Cfg),
+            ("t\n 2\n   -3HIS      N    1   0.305   0.837   1.095\n", Format::Gro),
+            ("Points_0,Points_1,Points_2\n", Format::Csv),
+            (",x_coord,y_coord,z_coord\n0,1,2,3\n", Format::Csv),
+            (",px,py,pz\n0,1,2,3\n", Format::Csv),
+        ] {
+            assert_eq!(detect(text), Ok(expected), "{text}");
+        }
+        for other in ["id name note\n1 ATOMS 3\n", "a b\ndata_x and more\n", "CRYSTAL PRIMVEC\n"] {
+            assert!(detect(other).is_err(), "{other}");
+        }
+    }
+
+    #[test]
+    fn names_tell_the_format_if_the_content_does_not() {
+        let of = |name: &str| named(Path::new(name), b"_cell_length_a 4\n");
+        for (name, expected) in [
+            ("a/b.PDB", Some(Format::Pdb)),
+            ("b.ent.gz", Some(Format::Pdb)),
+            ("CONTCAR", Some(Format::Poscar)),
+            ("b.lammpstrj.zst", Some(Format::LammpsDump)),
+            ("b.cif", Some(Format::Cif)),
+            ("b.txt", None),
+            ("data.txt", None),
+            ("b.gsd", None),
+            ("-", None),
+        ] {
+            assert_eq!(of(name), expected, "{name}");
+        }
+        assert_eq!(named(Path::new("b.cif"), b""), Some(Format::MmCif));
     }
 
     #[test]

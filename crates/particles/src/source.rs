@@ -5,7 +5,7 @@
 //! written in Rust, so the program needs no system library.
 
 use crate::utf16::{self, Utf16};
-use crate::{FileError, ReadProgress, line, progress::CountedFile};
+use crate::{FileError, ReadProgress, line, lines, progress::CountedFile};
 use flate2::read::MultiGzDecoder;
 use lzma_rust2::XzReader;
 use ruzstd::decoding::errors::{FrameDecoderError, ReadFrameHeaderError};
@@ -110,6 +110,17 @@ impl Source {
         Ok(())
     }
 
+    /// Extends a head of [`HEAD`] bytes that does not tell the format. Returns whether there were more bytes.
+    pub(crate) fn extend(&mut self) -> io::Result<bool> {
+        if self.head.len() != HEAD {
+            return Ok(false);
+        }
+        let settled = self.head.iter().rposition(|&byte| byte != b'\r').map_or(0, |at| at + 1);
+        self.reader.by_ref().take(HEAD as u64).read_to_end(&mut self.head)?;
+        lines::end_lines(&mut self.head[settled..]);
+        Ok(self.head.len() > HEAD)
+    }
+
     /// Returns a seekable file: the file itself, or a temporary copy if it was compressed or a pipe.
     pub(crate) fn into_file(mut self) -> Result<CountedFile, FileError> {
         let fault = |error: io::Error| {
@@ -133,7 +144,7 @@ impl Source {
 /// Returns the length of leading comments and blank lines in bytes.
 fn comments(text: &[u8]) -> usize {
     let text = text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text);
-    let lines = text.split_inclusive(|&byte| byte == b'\n');
+    let lines = text.split_inclusive(|byte| b"\r\n".contains(byte));
     let is_comment = |line: &&[u8]| {
         let line = line.trim_ascii_start();
         line.is_empty() || line::is_comment(line)
@@ -276,6 +287,8 @@ mod tests {
                 *last = b'\n';
             }
             text.extend(b"1 2 3\n".iter().cycle().take(rows));
+            let returns = text.iter().map(|&byte| if byte == b'\n' { b'\r' } else { byte });
+            assert_eq!(head_of(Cursor::new(returns.collect::<Vec<u8>>())), expected, "{comments}");
             assert_eq!(head_of(Cursor::new(text)), expected, "{comments} {rows}");
         }
         assert_eq!(head_of(io::repeat(b'#')), PREAMBLE);

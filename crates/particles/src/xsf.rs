@@ -1,8 +1,14 @@
 //! Reads XSF and AXSF of XCrySDen, in angstrom (xcrysden.org/doc/XSF.html). Grids of data are passed over.
 
 use crate::{
-    Cell, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
-    frame_reader::FrameReader, lines::Lines, number, schema::Schema, source::Source,
+    Cell, FileError, Format, LengthUnit, ParticleFrame, ReadOptions,
+    builder::Builder,
+    fields::Fields,
+    frame_reader::FrameReader,
+    lines::{self, Line, Lines},
+    number,
+    schema::Schema,
+    source::Source,
 };
 use glam::DVec3;
 use std::sync::Arc;
@@ -44,15 +50,15 @@ impl Xsf {
 
     /// Moves to the atoms of the next frame, if there is one.
     fn find(&mut self) -> Result<Option<Atoms>, FileError> {
-        while let Some(line) = self.lines.next()? {
-            let Some(keyword) = line.fields().next() else { continue };
+        while let Some(line) = line(&mut self.lines)? {
+            let Some(keyword) = fields(line.bytes).next() else { continue };
             if let Some((_, periodic)) = STRUCTURES.iter().find(|(own, _)| *own == keyword) {
                 self.periodic = *periodic;
             }
             match keyword {
                 b"PRIMVEC" => self.cell = self.vectors()?,
                 b"PRIMCOORD" => {
-                    let line = self.lines.require("its number of atoms")?;
+                    let line = require(&mut self.lines, "its number of atoms")?;
                     let count = line.whole_number(line.fields().next().unwrap_or_default())?;
                     return Ok(Some(Atoms::Counted(count)));
                 }
@@ -66,7 +72,7 @@ impl Xsf {
     fn vectors(&mut self) -> Result<Option<Cell>, FileError> {
         let mut vectors = [DVec3::ZERO; 3];
         for vector in &mut vectors {
-            let line = self.lines.require("its lattice vectors")?;
+            let line = require(&mut self.lines, "its lattice vectors")?;
             let numbers = line.fields().take(3).map(|field| line.number(field));
             let numbers = numbers.collect::<Result<Vec<f64>, FileError>>()?;
             let [x, y, z] = numbers[..] else {
@@ -81,19 +87,21 @@ impl Xsf {
 impl FrameReader for Xsf {
     fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
         let Some(atoms) = self.find()? else { return Ok(None) };
-        let columns = self.lines.next()?.map_or(PLAIN, |line| line.fields().count());
+        let columns = line(&mut self.lines)?.map_or(PLAIN, |line| fields(line.bytes).count());
         self.lines.back();
         let names = &NAMES[..if columns < NAMES.len() { PLAIN } else { NAMES.len() }];
         let names = names.iter().map(|name| (*name).to_owned()).collect();
         let schema = Schema::new(names, &self.options).map_err(|error| self.lines.ended(error))?;
         let mut builder = Builder::new(self.lines.path(), Format::Xsf, &Arc::new(schema));
-        while let Some(line) = self.lines.next()? {
+        while let Some(line) = line(&mut self.lines)? {
+            let fields = fields(line.bytes);
             // Keywords have no number after them, or one.
-            if line.fields().nth(1).and_then(number::parse).is_none() || line.fields().count() < 3 {
+            if fields.clone().nth(1).and_then(number::parse).is_none() || fields.clone().count() < 3
+            {
                 self.lines.back();
                 break;
             }
-            builder.row(&line, line.fields())?;
+            builder.row(&line, fields)?;
         }
         let rows = builder.frame.len() as u64;
         if let Atoms::Counted(count) = atoms
@@ -111,22 +119,44 @@ impl FrameReader for Xsf {
     }
 }
 
-/// Returns whether a file begins with a keyword of XSF, alone on its line or with a number, and has atoms.
+/// Returns the next line that is neither blank nor a comment.
+fn line(lines: &mut Lines) -> Result<Option<Line<'_>>, FileError> {
+    while lines.next()?.is_some_and(|line| fields(line.bytes).next().is_none()) {}
+    lines.back();
+    lines.next()
+}
+
+/// Returns the next such line, or an error that the file ends before `what`.
+fn require<'l>(lines: &'l mut Lines, what: &str) -> Result<Line<'l>, FileError> {
+    line(lines)?;
+    lines.back();
+    lines.require(what)
+}
+
+/// Returns the fields of a line before any comment.
+fn fields(line: &[u8]) -> Fields<'_> {
+    Fields::blanks(&line[..memchr::memchr(b'#', line).unwrap_or(line.len())])
+}
+
+/// Returns whether a file begins with a keyword of XSF, alone on its line or with a number, or has that of a structure among its
+/// first lines, and has atoms.
 pub(crate) fn is_xsf(head: &[u8]) -> bool {
-    let lines = head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
-    let mut lines = lines.filter(|line| !line.is_empty() && !line.starts_with(b"#"));
-    let mut words = lines.next().unwrap_or_default().split(|&byte| byte == b' ');
-    let (first, rest) = (words.next().unwrap_or_default(), words.filter(|word| !word.is_empty()));
-    let rest: Vec<&[u8]> = rest.collect();
-    let numbered = [&b"ANIMSTEPS"[..], b"ATOMS", b"PRIMVEC"].contains(&first);
-    let named = STRUCTURES.iter().any(|(own, _)| *own == first);
-    let is_first = match rest[..] {
-        [] => named || numbered,
-        [count] => numbered && number::whole(count).is_some(),
-        _ => false,
+    let lines = head.split(|&byte| byte == b'\n').map(fields);
+    let mut lines = lines.filter(|fields| fields.clone().next().is_some()).take(lines::FIRST);
+    let is_keyword = |fields: &Fields<'_>, is: &dyn Fn(&[u8]) -> bool| {
+        let mut fields = fields.clone();
+        fields.next().is_some_and(is)
+            && fields.next().is_none_or(|count| number::whole(count).is_some())
+            && fields.next().is_none()
     };
-    let has_line = |keyword: &[u8]| {
-        memchr::memmem::find_iter(head, keyword).any(|at| at == 0 || head[at - 1] == b'\n')
+    let is_structure = |word: &[u8]| STRUCTURES.iter().any(|(own, _)| *own == word);
+    let is_other = |word: &[u8]| [&b"PRIMVEC"[..], b"PRIMCOORD", b"ATOMS"].contains(&word);
+    let Some(first) = lines.next() else { return false };
+    let begins = is_keyword(&first, &|word| {
+        is_structure(word) || word == b"ANIMSTEPS" || word == b"ATOMS" || word == b"PRIMVEC"
+    });
+    let has = |is: &dyn Fn(&[u8]) -> bool| {
+        is_keyword(&first, is) || { lines.clone() }.any(|fields| is_keyword(&fields, is))
     };
-    is_first && [&b"PRIMVEC"[..], b"PRIMCOORD", b"ATOMS"].into_iter().any(has_line)
+    (begins || has(&is_structure)) && has(&is_other)
 }

@@ -152,7 +152,7 @@ impl Comment {
             periodic: value("pbc").map_or([true; 3], periodic),
         });
         let origin = origin.transpose()?.map_or(DVec3::ZERO, DVec3::from_array);
-        let cell = cell.and_then(|cell| Cell { origin, ..cell }.checked());
+        let cell = cell.and_then(|cell| Cell { origin, ..cell }.thickened().checked());
         let lammps = text.strip_prefix("Atoms. Timestep:").map(str::trim);
         let step = lammps.or_else(|| value("Step")).or_else(|| value("Timestep"));
         Ok(Self {
@@ -208,7 +208,11 @@ fn numbers<const COUNT: usize>(
     let fields = fields.filter(|field| !field.is_empty());
     let numbers: Option<Vec<f64>> = fields.map(|field| number::parse(field.as_bytes())).collect();
     let numbers = numbers.and_then(|numbers| numbers.try_into().ok());
-    numbers.ok_or_else(|| line.whole(format!("{key} is `{value}`, but must be {COUNT} numbers")))
+    numbers.ok_or_else(|| {
+        let example = ["0 0 0", "5 0 0 0 5 0 0 0 5"][usize::from(COUNT > 3)];
+        let help = format!("write the numbers in quotes, as in {key}=\"{example}\"");
+        line.whole(format!("{key} is `{value}`, but must be {COUNT} numbers")).with_help(help)
+    })
 }
 
 /// Parses boundary conditions such as `T T F`.

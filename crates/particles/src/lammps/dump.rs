@@ -28,6 +28,8 @@ pub(in super::super) struct Dump {
     options: ReadOptions,
     /// Units of the earlier frames: only the first must declare them.
     units: LengthUnit,
+    /// True after the first section. Other text may precede it.
+    begun: bool,
     /// True once a frame in YAML began.
     is_yaml: bool,
 }
@@ -45,7 +47,8 @@ pub(super) struct Head {
 impl Dump {
     pub(in super::super) fn new(source: Source, options: &ReadOptions) -> Self {
         let lines = Lines::new(source);
-        Self { lines, options: options.clone(), units: LengthUnit::Unknown, is_yaml: false }
+        let units = LengthUnit::Unknown;
+        Self { lines, options: options.clone(), units, begun: false, is_yaml: false }
     }
 
     /// Reads a frame up to the column names of atoms; returns `None` at the end of the file.
@@ -56,10 +59,14 @@ impl Dump {
             if line.is_blank() {
                 continue;
             }
-            if self.is_yaml || yaml::begins(line.bytes) {
+            if self.is_yaml || !self.begun && yaml::begins(line.bytes) {
                 self.is_yaml = true;
                 self.lines.back();
                 return yaml::head(&mut self.lines, &mut self.units);
+            }
+            self.begun |= line.bytes.starts_with(b"ITEM:");
+            if !self.begun {
+                continue;
             }
             any = true;
             let text = line.text();

@@ -44,7 +44,10 @@ fn points_are_the_same_in_text_and_binary() {
     );
     let big = binary("binary_big_endian", |bytes| bytes.into_iter().rev().collect());
     let windows = text.replace('\n', "\r\n").into_bytes();
-    for content in [text.into_bytes(), windows, little(), big] {
+    let old = text.replace('\n', "\r").into_bytes();
+    let old_binary =
+        little().into_iter().map(|byte| if byte == b'\n' { b'\r' } else { byte }).collect();
+    for content in [text.into_bytes(), windows, old, little(), old_binary, big] {
         let frame = frame_with(content, &columns("q")).expect("a frame");
         assert_eq!(frame.position(0), DVec3::new(0.1, 2.5, -3.0));
         assert_eq!(
@@ -58,6 +61,29 @@ fn points_are_the_same_in_text_and_binary() {
 }
 
 #[test]
+fn lists_of_vertices_are_passed_over() {
+    let header = |format: &str| {
+        format!(
+            "ply\nformat {format} 1.0\nelement vertex 2\nproperty list uchar int view\nproperty float x\n\
+             property float y\nproperty float z\nproperty list uchar short tags\nproperty uchar q\nend_header\n"
+        )
+    };
+    let text = header("ascii") + "2 5 6 1 2 3 0 7\n0 4 5 6 1 9 8\n";
+    let mut binary = header("binary_little_endian").into_bytes();
+    let place = |place: [f32; 3]| place.map(f32::to_le_bytes).concat();
+    binary.extend([&[2, 5, 0, 0, 0, 6, 0, 0, 0][..], &place([1.0, 2.0, 3.0]), &[0, 7]].concat());
+    binary.extend([&[0][..], &place([4.0, 5.0, 6.0]), &[1, 9, 0, 8]].concat());
+    for content in [text.clone().into_bytes(), binary.clone()] {
+        let frame = frame_with(content, &columns("q")).expect("a frame");
+        assert_eq!((&frame.x[..], &frame.z[..]), (&[1.0, 4.0][..], &[3.0, 6.0][..]));
+        assert_eq!(frame.numbers[0].values, [7.0, 8.0]);
+        assert_eq!(frame.columns, ["x", "y", "z", "q"]);
+    }
+    assert_eq!(fault(&binary[..binary.len() - 1]).2, "ends before its last vertex");
+    assert_eq!(fault(text.replace("0 4 5 6 1 9 8", "0 4 5")).2, "a vertex has 6 numbers");
+}
+
+#[test]
 fn faulty_files_are_refused() {
     let text = |from: &str, to: &str| format!("{}1 2 3", header("ascii").replace(from, to));
     for (content, message) in [
@@ -65,10 +91,6 @@ fn faulty_files_are_refused() {
         ("ply\nformat ascii 1.0\n".to_owned(), "the header does not end: no line is `end_header`"),
         (text("vertex 2", "vertex many"), "`many` is not a whole number"),
         (text("property double x", "property complex x"), "an unknown type of numbers"),
-        (
-            text("property double x", "property list uchar int x"),
-            "a list in each vertex is not read",
-        ),
         (text("element vertex 2", "element point 2"), "has no vertices"),
         (text("element camera 1\n", ""), "a property before any element"),
         (text("ascii", "base64"), "an unknown format"),

@@ -406,7 +406,7 @@ fn text_in_utf_16_is_read_or_named() {
 
 #[test]
 fn files_of_other_formats_come_with_a_command() {
-    let tng = [&[0; 40][..], b"TRAJNG", &[0; 100]].concat();
+    let tng = [&[0; 40][..], b"GENERAL INFO\0", &[0; 100]].concat();
     for (content, name, command) in [
         (&tng[..], "TNG", "gmx trjconv"),
         (b"TITLE\nwater\nEND\nPOSITION\n", "G96", "gmx editconf"),
