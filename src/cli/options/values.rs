@@ -101,20 +101,26 @@ pub(in crate::cli) fn region(text: &str) -> Result<Region, String> {
     })
 }
 
-/// `1%`, `0.01` or `none`.
+/// `1%` or `none`. A number without the sign could be a percentage or a fraction, so it is neither.
 fn error(text: &str) -> Result<OrNone<f64>, String> {
     if text == "none" {
         return Ok(OrNone(None));
     }
-    let (digits, unit) = text.strip_suffix('%').map_or((text, 1.0), |digits| (digits, 100.0));
-    number(digits)
-        .map(|value: f64| value / unit)
-        .filter(|share| *share > 0.0 && *share <= 1.0)
-        .map(|share| OrNone(Some(share)))
-        .ok_or_else(|| {
-            "give a relative error greater than 0 and at most 100%, as in 1% or 0.01, or none"
-                .to_owned()
-        })
+    let share = |digits: &str| {
+        let percent: f64 = number(digits)?;
+        Some(percent / 100.0).filter(|share| *share > 0.0 && *share <= 1.0)
+    };
+    let given = text.strip_suffix('%').and_then(share);
+    given.map(|share| OrNone(Some(share))).ok_or_else(|| {
+        let bare: Option<f64> = number(text).filter(|value: &f64| *value > 0.0 && *value <= 100.0);
+        bare.map_or_else(
+            || {
+                "give a relative error greater than 0% and at most 100%, as in 1%, or none"
+                    .to_owned()
+            },
+            |percent| format!("give the percent sign, as in {percent}%, or none"),
+        )
+    })
 }
 
 /// `90s`, `5m`, `1h 30m` or `none`.
@@ -215,7 +221,10 @@ mod tests {
             ("roulette", &["0", "1.01", "-0.5", "NaN", "inf", "some"]),
             ("exposure", &["NaN", "inf", "101", "-101", "bright"]),
             ("ao_distance", &["-1", "NaN", "-inf"]),
-            ("until_error", &["0", "0%", "-1%", "101%", "NaN", "inf", "1 %%", "%", "small", ""]),
+            (
+                "until_error",
+                &["0", "0%", "-1%", "101%", "NaN", "inf", "1 %%", "%", "small", "", "1", "0.01"],
+            ),
             ("time", &["60", "0s", "-1s", "1 fortnight", "100y", "s", ""]),
             ("depth", &["-1", "4294967296", "none"]),
             ("seed", &["-1", "18446744073709551616"]),
@@ -230,6 +239,7 @@ mod tests {
         }
         assert!(radii("0.1,").is_err() && radii("inf").is_err());
         assert!(mix("1,2").is_err() && mix("1,2,3,4").is_err());
+        assert!(set("until_error", "0.5").unwrap_err().contains("0.5%"));
         assert!(set("roulette", "throughputs").unwrap_err().contains("throughput"));
     }
 
@@ -240,7 +250,7 @@ mod tests {
             ("roulette", "none", Value::Word("none")),
             ("until_error", "100%", Value::Number(1.0)),
             ("until_error", "2.5 %", Value::Number(0.025)),
-            ("until_error", "0.01", Value::Number(0.01)),
+            ("until_error", "0.01%", Value::Number(0.0001)),
             ("until_error", "none", Value::None),
             ("time", "1h 30m", Value::Number(5400.0)),
             ("time", "none", Value::None),
