@@ -2,6 +2,7 @@
 
 use super::failure::Failure;
 use clap::Command;
+use spherule_render::scene::Anchor;
 use std::env;
 use std::ffi::{OsStr, OsString};
 use std::fs;
@@ -30,6 +31,7 @@ pub(super) fn command_line(program: &Command) -> Result<Vec<OsString>, Failure> 
 }
 
 fn complete(program: &Command, mut line: Vec<OsString>) -> Result<Vec<OsString>, Failure> {
+    join_positions(&mut line);
     let Some(first) = line.get(1) else { return Ok(line) };
     let is_command = |word: &str| word == HELP || program.find_subcommand(word).is_some();
     let is_known = |word: &str| OWN.contains(&word) || is_command(word);
@@ -41,6 +43,25 @@ fn complete(program: &Command, mut line: Vec<OsString>) -> Result<Vec<OsString>,
     }
     line.insert(1, USUAL.into());
     Ok(line)
+}
+
+/// Options whose position may be left out, so that `clap` reads one only after `=`.
+const PLACED: [&str; 3] = ["--legend", "--axes", "--scale-bar"];
+
+/// Joins such an option and the position after it by `=`, unless a file has that name.
+fn join_positions(line: &mut Vec<OsString>) {
+    let mut at = 1;
+    while at + 1 < line.len() && line[at] != "--" {
+        let is_placed = line[at].to_str().is_some_and(|option| PLACED.contains(&option));
+        let text = line[at + 1].to_str().unwrap_or_default();
+        let position = text.rsplit(':').next().unwrap_or_default();
+        if is_placed && Anchor::named(position).is_some() && !Path::new(text).exists() {
+            let position = line.remove(at + 1);
+            line[at].push("=");
+            line[at].push(position);
+        }
+        at += 1;
+    }
 }
 
 /// Names of all commands.
@@ -94,6 +115,16 @@ mod tests {
         for words in [&[][..], &["info", "a"], &["render"], &["help"], &["--help"], &["-V"]] {
             assert_eq!(completed(words).expect("a line").len(), words.len() + 1, "{words:?}");
         }
+    }
+
+    #[test]
+    fn positions_of_annotations_need_no_equals_sign() {
+        let joined = |words: &[&str]| completed(words).expect("a line")[2..].to_vec();
+        assert_eq!(joined(&["-", "--legend", "top-left"]), ["-", "--legend=top-left"]);
+        assert_eq!(joined(&["--axes", "cell:top", "-"]), ["--axes=cell:top", "-"]);
+        assert_eq!(joined(&["--scale-bar", "10:right"]), ["--scale-bar=10:right"]);
+        assert_eq!(joined(&["--legend", "Cargo.toml"]), ["--legend", "Cargo.toml"]);
+        assert_eq!(joined(&["--", "--legend", "top"]), ["--", "--legend", "top"]);
     }
 
     #[test]

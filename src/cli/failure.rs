@@ -2,7 +2,7 @@
 
 use super::output;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
-use clap::error::ErrorKind;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use memchr::{memchr, memrchr};
 use spherule_measure::bench::BenchError;
 use spherule_render::checkpoint::{CheckpointError, LockError};
@@ -132,6 +132,7 @@ impl Failure {
                 return ExitCode::SUCCESS;
             }
             Self::Arguments(error) => {
+                let error = with_better_tip(error);
                 // There is nowhere to report that standard error is closed.
                 let _ = error.print();
                 return ExitCode::from(2);
@@ -159,6 +160,47 @@ impl Failure {
         }
         ExitCode::FAILURE
     }
+}
+
+/// Options of other programs, and those of this one that do the same.
+const OTHERS: [(&str, &str); 9] = [
+    ("--hide", "--select"),
+    ("--filter-by", "--select"),
+    ("--camera", "--view"),
+    ("--rotate", "--turntable"),
+    ("--transparent", "--opacity"),
+    ("--transparency", "--opacity"),
+    ("--title", "--label"),
+    ("--text", "--label"),
+    ("--colour-by", "--color-by"),
+];
+
+/// Similarity of an unknown option to one that is suggested, 0 to 1, below which the suggestion misleads.
+const LIKENESS: f64 = 0.7;
+
+/// Replaces the option that is suggested instead of an unknown one, if another one is meant, or removes it.
+fn with_better_tip(mut error: clap::Error) -> clap::Error {
+    let text = |error: &clap::Error, kind| match error.get(kind) {
+        Some(ContextValue::String(text)) => Some(text.clone()),
+        _ => None,
+    };
+    let Some(unknown) = text(&error, ContextKind::InvalidArg) else { return error };
+    if error.kind() != ErrorKind::UnknownArgument {
+        return error;
+    }
+    let same = OTHERS.iter().find(|(other, _)| *other == unknown).map(|(_, own)| *own);
+    let tip = text(&error, ContextKind::SuggestedArg);
+    let is_like = |tip: &String| strsim::normalized_damerau_levenshtein(&unknown, tip) >= LIKENESS;
+    let better = same.map(str::to_owned).or_else(|| tip.clone().filter(is_like));
+    if better != tip {
+        error.remove(ContextKind::SuggestedArg);
+        // It is that of the option that was suggested.
+        error.remove(ContextKind::Usage);
+    }
+    if let Some(better) = better {
+        error.insert(ContextKind::SuggestedArg, ContextValue::String(better));
+    }
+    error
 }
 
 fn report_scene(mut error: FileError) {

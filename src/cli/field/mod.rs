@@ -11,6 +11,7 @@ use super::files::Files;
 use super::options::values::Radii;
 use super::output;
 use clap::ValueEnum;
+use indicatif::HumanCount;
 use spherule_render::scene::generate::{
     DEFAULT_MIX, Field, Generator, Grid, Lattice, Sphereflake, Volume, Weekend,
 };
@@ -27,6 +28,12 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     files.writes("the spheres of --output", &columns);
     files.check()?;
     let generator = args.parameters.generator(args.kind)?;
+    if !args.quiet
+        && let Some(count) = args.parameters.count
+        && let Some(text) = product(&generator, count)
+    {
+        output::note(text);
+    }
     let scene = scene::scene(&generator, args.seed)?;
     write(&scene, &args.output)?;
     if !args.quiet {
@@ -34,6 +41,17 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
         output::print(format_args!("{}: {count} in {}", args.output.display(), columns.display()));
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Returns the number of spheres as a product, of a generator whose count is that along an edge.
+fn product(generator: &Generator, count: u64) -> Option<String> {
+    let edge = HumanCount(count);
+    let product = match generator {
+        Generator::Grid(_) | Generator::Field(_) => format!("{edge} x {edge}"),
+        Generator::Lattice(_) => format!("4 x {edge} x {edge} x {edge}"),
+        Generator::Volume(_) | Generator::Sphereflake(_) | Generator::Weekend(_) => return None,
+    };
+    Some(format!("--count is that along each side: {product} = {}", spheres(generator.count())))
 }
 
 /// Rejects names that do not end in `.toml`, which are not read as scenes.
