@@ -118,9 +118,9 @@ pub mod scene {
         #[doc(inline)]
         pub use spherule_render::scene::particles::{
             ArrowCentering, ArrowSizes, ArrowStyle, Arrows, BondRules, BondSource, Bonds, Cell,
-            Coloring, ColumnColors, ElementColors, Legend, Model, Opacity, Orientation,
-            ParticleStyle, Particles, PeriodicError, Selection, Shapes, Trails, TypeMaterial,
-            TypeStyle, UpReason, VectorColumns, of_frame, read,
+            Coloring, ColumnColors, ElementColors, FirstFrame, Legend, Model, Opacity, Orientation,
+            ParticleStyle, Particles, PeriodicError, Selection, Shapes, Trails, TrajectoryReader,
+            TypeMaterial, TypeStyle, UpReason, VectorColumns, of_frame, of_frame_in, read,
         };
     }
 }
@@ -192,6 +192,7 @@ pub mod denoise {
     #[doc(inline)]
     pub use spherule_render::denoise::{
         Asked, Choice, Denoised, Denoiser, Judged, MAX_ERROR, choose, denoise, max_samples,
+        trajectory_samples,
     };
 }
 

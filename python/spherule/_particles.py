@@ -117,6 +117,8 @@ class Particles:
     _kinds: tuple[list[str], npt.NDArray[np.uint32]] | None
     _elements: list[str | None]
     _virtual_sites: list[bool]
+    #: The choices that all frames of the file have in common, and the positions for which they hold.
+    _first_frame: tuple[dict[str, Any], npt.NDArray[Any]] | None
     _materials: tuple[list[str], npt.NDArray[np.uint32]] | None
 
     def __init__(
@@ -154,6 +156,7 @@ class Particles:
         names = self._kinds[0] if self._kinds else []
         self._elements = list(elements) if elements is not None else [_native.element_of(name) for name in names]
         self._virtual_sites = []
+        self._first_frame = None
         self.bonds, self.bond_shifts = None, None
         if bonds is not None:
             self.bonds, self.bond_shifts = _arrays.bonds(bonds, bond_shifts, count)
@@ -223,6 +226,9 @@ class Particles:
     def _table(self, radii: str | None, radius_scale: float) -> dict[str, Any]:
         """The columns for the extension module."""
         numbers, texts = [], []
+        first_frame, positions = self._first_frame or (None, None)
+        if positions is not self.positions:
+            first_frame = None
         for name, values in self.columns.items():
             if values.dtype.kind == "U":
                 texts.append((name, _arrays.coded(name, values, len(self))))
@@ -239,6 +245,7 @@ class Particles:
             "kinds": self._kinds,
             "elements": self._elements,
             "virtual_sites": self._virtual_sites,
+            "first_frame": first_frame,
             "bonds": None if self.bonds is None else _arrays.bonds(self.bonds, self.bond_shifts, len(self)),
             "format": self.format,
             "materials": self._materials,
@@ -337,6 +344,7 @@ def read(
     particles.semi_axes, particles.orientation = table["semi_axes"], table["orientation"]
     particles._kinds, particles._elements = table["kinds"], table["elements"]
     particles._materials, particles._virtual_sites = table["materials"], table["virtual_sites"]
+    particles._first_frame = (table["first_frame"], particles.positions) if table["first_frame"] else None
     particles.bonds, particles.bond_shifts = table["bonds"] or (None, None)
     particles.columns = dict(table["numbers"])
     for label, texts in table["texts"].items():

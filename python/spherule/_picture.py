@@ -66,7 +66,8 @@ class Picture:
         return int(self.pixels.shape[0])
 
     def __repr__(self) -> str:
-        facts = [f"{self.width} x {self.height} pixels", f"{self.spp[1]} samples"]
+        least, most = self.spp
+        facts = [f"{self.width} x {self.height} pixels", f"{least} to {most} samples" if least < most else f"{most} samples"]
         if self.error is not None:
             facts.append(f"error {100 * self.error:.2g} %")
         if not self.complete:

@@ -10,6 +10,7 @@
 mod arrays;
 mod encode;
 mod errors;
+mod first_frame;
 mod level;
 mod options;
 mod parts;

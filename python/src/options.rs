@@ -2,6 +2,7 @@
 
 use crate::arrays::{Column, Table, check_points, check_positive, refused};
 use crate::errors::error;
+use crate::first_frame::FirstFrameTable;
 use glam::{DQuat, DVec3};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
@@ -50,6 +51,8 @@ pub(crate) struct ParticleTable<'py> {
     /// The format of the file that the particles were read from, which decides what is up. Rows of files that cannot be
     /// drawn are left out; those of arrays are refused.
     format: Option<String>,
+    /// The choices by the first frame of the file.
+    pub(crate) first_frame: Option<FirstFrameTable>,
 }
 
 /// Rows of bonded particles, and the edges of the cell to add to each second one, if they are known.
@@ -219,7 +222,8 @@ impl StyleTable {
             if let Some(opacity) = opacity.filter(|opacity| !(0.0..=1.0).contains(opacity)) {
                 return Err(format!("the opacity of `{name}` is {opacity}, but must be 0 to 1"));
             }
-            Ok(TypeStyle { name, radius, color, material: known.transpose()?, opacity })
+            let material = known.transpose()?;
+            Ok(TypeStyle { name, radius, color, material, opacity, element: None })
         });
         let types = types.collect::<Result<_, _>>().map_err(fault)?;
         Ok(ParticleStyle {

@@ -1,6 +1,7 @@
 //! Particle files as columns.
 
 use crate::errors::{error, of_file};
+use crate::first_frame;
 use crate::pools::pool;
 use crate::watch::Watcher;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
@@ -8,9 +9,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use spherule::particles::{
     self as particles, BondSource, Codes, Columns, Element, FileError, Format, FrameChoice,
-    ParticleFrame, ReadOptions, TextColumn, read_frame,
+    ParticleFrame, ReadOptions, TextColumn,
 };
-use spherule::scene::particles::TypeMaterial;
+use spherule::scene::particles::{FirstFrame, TrajectoryReader, TypeMaterial};
 use std::path::{Path, PathBuf};
 
 /// Options for reading a particle file, by the names that the program has for them.
@@ -71,10 +72,21 @@ pub(crate) fn read(
     let options = table.options(py)?;
     let work = move |_: &_| frame_of(&path, frame, options);
     let (read, _) = Watcher::default().run(py, pool(py, None)?, work)?;
-    columns(py, read.map_err(|error| of_file(py, &error))?)
+    let (frame, first_frame) = read.map_err(|error| of_file(py, &error))?;
+    let table = columns(py, frame)?;
+    table.set_item(
+        "first_frame",
+        first_frame.map(|first| first_frame::table(py, &first)).transpose()?,
+    )?;
+    Ok(table)
 }
 
-fn frame_of(path: &Path, frame: i64, options: ReadOptions) -> Result<ParticleFrame, FileError> {
+/// Returns a frame, and the choices by the first one, if the file has several.
+fn frame_of(
+    path: &Path,
+    frame: i64,
+    options: ReadOptions,
+) -> Result<(ParticleFrame, Option<FirstFrame>), FileError> {
     let frame = match frame {
         -1 => FrameChoice::Last,
         0.. => FrameChoice::Index(frame.unsigned_abs()),
@@ -87,7 +99,7 @@ fn frame_of(path: &Path, frame: i64, options: ReadOptions) -> Result<ParticleFra
             FrameChoice::Index(index?)
         }
     };
-    read_frame(path, &ReadOptions { frame, ..options })
+    TrajectoryReader::default().read_frame(path, &ReadOptions { frame, ..options })
 }
 
 fn columns(py: Python<'_>, frame: ParticleFrame) -> PyResult<Bound<'_, PyDict>> {

@@ -11,7 +11,7 @@ use spherule::compose::{
     self, AnnotationRequest, CameraRequest, CellRequest, Content, ROWS, Request, Subject, Value,
 };
 use spherule::particles::{FileError, NumberColumn, ParticleFrame, ReadOptions};
-use spherule::scene::particles::of_frame;
+use spherule::scene::particles::{FirstFrame, of_frame_in};
 use spherule::scene::{
     Anchor, Axis, EnvironmentMap, Preset, SliceMode, SlicePlane, Spheres, text_without_columns,
     write,
@@ -27,10 +27,12 @@ const ARRAYS: &str = "particles";
 /// A scene that Python holds.
 #[pyclass(frozen, module = "spherule._spherule")]
 pub(crate) struct Scene {
-    scene: Arc<Mutex<spherule::Scene>>,
+    held: Arc<Mutex<spherule::Scene>>,
     /// Row in the user's arrays of each sphere, unless they are the same; spheres of sections follow. If particles are
     /// ellipsoids, numbers of sticks, rows of the ellipsoids and numbers of those of sections are next.
     rows: Option<Arc<[u32]>>,
+    /// Number of particles in the first frame of the file, if it has several.
+    first_frame: Option<usize>,
 }
 
 /// A scene for work on other threads.
@@ -38,16 +40,19 @@ pub(crate) struct SharedScene {
     pub(crate) scene: Arc<Mutex<spherule::Scene>>,
     /// Row in the user's arrays of each sphere, unless they are the same.
     pub(crate) rows: Option<Arc<[u32]>>,
+    /// Number of particles in the first frame of the file, if it has several.
+    pub(crate) first_frame: Option<usize>,
 }
 
-/// The text of a scene without its spheres, their places and radii, their materials, colors, and rows in the user's
-/// arrays.
+/// The text of a scene without its spheres, their places and radii, their materials, colors, rows in the user's
+/// arrays, and the number of particles in the first frame of its file.
 type SceneColumns<'py> = (
     String,
     [Bound<'py, PyArray1<f64>>; 4],
     Bound<'py, PyArray1<u32>>,
     Bound<'py, PyArray1<f32>>,
     Option<Bound<'py, PyArray1<u32>>>,
+    Option<usize>,
 );
 
 /// Sections as in a scene file.
@@ -80,8 +85,14 @@ struct ViewTable {
     slice_mode: Option<String>,
 }
 
-/// A scene, and the row in the user's arrays of each sphere, unless they are the same.
-type Numbered = (spherule::Scene, Option<Vec<u32>>);
+/// A scene, and facts about its particles.
+struct Numbered {
+    scene: spherule::Scene,
+    /// Row in the user's arrays of each sphere, unless they are the same.
+    rows: Option<Vec<u32>>,
+    /// Number of particles in the first frame of the file, if it has several.
+    first_frame: Option<usize>,
+}
 
 /// Why there is no scene.
 pub(crate) enum Fault {
@@ -141,17 +152,18 @@ impl Scene {
         let given = sections.parse().map_err(|fault| fault.raise(py))?;
         let made = match particles {
             None => complete(given, &request),
-            Some(table) => {
+            Some(mut table) => {
+                let first_frame = table.first_frame.take();
                 let (frame, options) = table.frame(py)?;
+                let first_frame = first_frame.map(|first| first.first_frame(frame.format));
                 request.style = style.style(py, options.radius_scale)?;
                 let sections = compose::Sections { scene: given, keys: sections.keys };
-                let work = Work { frame, options, request, sections };
+                let work = Work { frame, first_frame, options, request, sections };
                 // Copies and orientation of many particles take a while.
                 Watcher::default().run(py, pool(py, None)?, |_| work.scene())?.0
             }
         };
-        let (scene, rows) = made.map_err(|fault| fault.raise(py))?;
-        Ok(Self::of(scene, rows))
+        Ok(Self::of(made.map_err(|fault| fault.raise(py))?))
     }
 
     /// Reads a scene file.
@@ -159,8 +171,7 @@ impl Scene {
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let read = move || complete(spherule::Scene::load(&path)?, &Request::default());
         let read = Watcher::default().run(py, pool(py, None)?, move |_| read())?.0;
-        let (scene, rows) = read.map_err(|fault: Fault| fault.raise(py))?;
-        Ok(Self::of(scene, rows))
+        Ok(Self::of(read.map_err(|fault: Fault| fault.raise(py))?))
     }
 
     /// Writes a scene file, and the files beside it.
@@ -189,11 +200,12 @@ impl Scene {
         let places = [spheres.x, spheres.y, spheres.z, spheres.radius].map(column);
         let color = PyArray1::from_vec(py, colors.into_flattened());
         let rows = self.rows.as_ref().map(|rows| PyArray1::from_slice(py, rows));
-        Ok((text, places, material, color, rows))
+        Ok((text, places, material, color, rows, self.first_frame))
     }
 
     /// The scene that `columns` describes.
     #[staticmethod]
+    #[pyo3(signature = (text, places, material, color, rows, first_frame=None))]
     fn of_columns(
         py: Python<'_>,
         text: &str,
@@ -201,6 +213,7 @@ impl Scene {
         material: PyReadonlyArray1<'_, u32>,
         color: PyReadonlyArray1<'_, f32>,
         rows: Option<PyReadonlyArray1<'_, u32>>,
+        first_frame: Option<usize>,
     ) -> PyResult<Self> {
         let scene = spherule::Scene::parse(text, KEYWORDS, Path::new(""));
         let mut scene = scene.map_err(|error| of_file(py, &error))?;
@@ -209,7 +222,8 @@ impl Scene {
         let color = color.as_array().to_vec();
         let color = color.as_chunks().0.iter().map(|&color| Rgb::from_array(color)).collect();
         scene.spheres = Spheres { x, y, z, radius, material, color };
-        Ok(Self::of(scene, rows.map(|rows| rows.as_array().to_vec())))
+        let rows = rows.map(|rows| rows.as_array().to_vec());
+        Ok(Self::of(Numbered { scene, rows, first_frame }))
     }
 
     /// The number of spheres and ellipsoids.
@@ -254,16 +268,20 @@ impl Scene {
 }
 
 impl Scene {
-    fn of(scene: spherule::Scene, rows: Option<Vec<u32>>) -> Self {
-        Self { scene: Arc::new(Mutex::new(scene)), rows: rows.map(Arc::from) }
+    fn of(Numbered { scene, rows, first_frame }: Numbered) -> Self {
+        Self { held: Arc::new(Mutex::new(scene)), rows: rows.map(Arc::from), first_frame }
     }
 
     pub(crate) fn share(&self) -> SharedScene {
-        SharedScene { scene: Arc::clone(&self.scene), rows: self.rows.clone() }
+        SharedScene {
+            scene: Arc::clone(&self.held),
+            rows: self.rows.clone(),
+            first_frame: self.first_frame,
+        }
     }
 
     fn lock(&self) -> MutexGuard<'_, spherule::Scene> {
-        self.scene.lock().unwrap_or_else(PoisonError::into_inner)
+        self.held.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -342,12 +360,13 @@ fn complete(scene: spherule::Scene, request: &Request) -> Result<Numbered, Fault
     let content = Content::Scene(Box::new(scene));
     let mut staged = compose::stage(request, &subject(""), content, None)?;
     compose::choose(request, &mut staged)?;
-    Ok((staged.scene, staged.rows))
+    Ok(Numbered { scene: staged.scene, rows: staged.rows, first_frame: None })
 }
 
 /// Particles, style and sections of a scene of particles.
 struct Work {
     frame: ParticleFrame,
+    first_frame: Option<FirstFrame>,
     options: ReadOptions,
     request: Request,
     /// The sections that are given.
@@ -359,7 +378,7 @@ impl Work {
     /// has.
     fn scene(self) -> Result<Numbered, Fault> {
         let renumbers = self.renumbers();
-        let Self { mut frame, options, mut request, sections } = self;
+        let Self { mut frame, first_frame, options, mut request, sections } = self;
         let count = frame.len();
         if renumbers || has_undrawn_rows(&frame) || !frame.shapes.is_empty() {
             // Columns of numbers follow their rows through selections and copies.
@@ -373,7 +392,7 @@ impl Work {
             .add_derived_columns(&columns, &bonds)
             .and_then(|()| frame.find_bonds(&bonds))
             .map_err(|message| FileError::whole_file(path, message))?;
-        let particles = Box::new(of_frame(path, frame, &options)?);
+        let particles = Box::new(of_frame_in(path, frame, &options, first_frame)?);
         request.sections = Some(sections);
         let content = Content::Particles(particles);
         let mut staged = compose::stage(&request, &subject(&title), content, None)?;
@@ -392,7 +411,7 @@ impl Work {
         if let Some(sections) = &request.sections {
             staged.scene.warnings.extend(sections.scene.warnings.iter().cloned());
         }
-        Ok((staged.scene, staged.rows))
+        Ok(Numbered { scene: staged.scene, rows: staged.rows, first_frame: staged.first_frame })
     }
 
     /// Returns whether spheres may get other rows than their particles.

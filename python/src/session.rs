@@ -137,15 +137,15 @@ impl Session {
     ) -> Result<Self, Fault> {
         let mut scene = shared.scene.lock().unwrap_or_else(PoisonError::into_inner);
         let kept = (scene.settings.clone(), scene.camera.clone());
-        let (locked, rows) = (&mut *scene, shared.rows.clone());
-        let begun = pool.install(|| Self::begin_with(locked, rows, request, taken, part));
+        let locked = &mut *scene;
+        let begun = pool.install(|| Self::begin_with(locked, shared, request, taken, part));
         (scene.settings, scene.camera) = kept;
         begun
     }
 
     fn begin_with(
         scene: &mut spherule::Scene,
-        rows: Option<Arc<[u32]>>,
+        shared: &SharedScene,
         request: Request,
         taken: bool,
         part: Option<Part>,
@@ -155,7 +155,8 @@ impl Session {
         compose::frame(scene, false, None)?;
         let Settings { width, height, .. } = scene.settings;
         let region = Region { x: 0, y: 0, width, height };
-        let asked = Asked { part: part.is_some(), spp: keys.iter().any(|key| key == "spp") };
+        let spp = keys.iter().any(|key| key == "spp");
+        let asked = Asked { part: part.is_some(), spp, first_frame: shared.first_frame };
         let choice = choose(scene, region, scene.spheres.len(), asked);
         let settings = scene.settings.clone();
         let identity = part.is_some().then(|| Identity::of(scene));
@@ -193,7 +194,7 @@ impl Session {
             region,
             denoiser,
             layers,
-            rows,
+            rows: shared.rows.clone(),
             render,
             memory,
             identity,

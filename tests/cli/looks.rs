@@ -138,3 +138,22 @@ fn invalid_looks_are_refused() {
         assert!(!folder.path("x.ppm").exists(), "{args:?}");
     }
 }
+
+#[test]
+fn options_without_effect_on_particles_are_named() {
+    let folder = Folder::new();
+    folder.write("a.csv", "x,y,z,radius,q\n0,0,0,0.5,1\n1,0,0,0.5,2\n");
+    let cases = [
+        ("--smooth", "3"),
+        ("--trail", "3"),
+        ("--slice", "z>1e9"),
+        ("--translucent", "q > 9"),
+        ("--bond-radius", "0.1"),
+    ];
+    for (option, value) in cases {
+        let line = ["render", "a.csv", "--size", "8x6", "--spp", "1", "-o", "a.ppm", option, value];
+        let output = folder.run(&line);
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(stderr.contains(&format!("{option} has no effect")), "{option}: {stderr}");
+    }
+}

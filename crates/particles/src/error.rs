@@ -1,5 +1,6 @@
 //! Errors in files: the file, the position in it, and advice.
 
+use std::fmt::{self, Debug, Formatter};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -9,7 +10,7 @@ const LONGEST: usize = 600;
 
 /// An error in a file of particles, or in a scene file. Prints as `path:line:column: message` and, on a
 /// second line, the help.
-#[derive(Clone, Debug, Error)]
+#[derive(Clone, Error)]
 #[error("{}: {message}{}", self.location(), self.advice())]
 pub struct FileError {
     /// The faulty file.
@@ -37,6 +38,13 @@ pub struct Place {
     pub first_line: usize,
     /// The faulty bytes of `source_text`.
     pub span: Range<usize>,
+}
+
+impl Debug for FileError {
+    /// The text of the error, which `main` prints if it returns one: not that of the file.
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{self}")
+    }
 }
 
 impl FileError {
@@ -132,6 +140,7 @@ mod tests {
         let error = FileError::at(Path::new("a.toml"), "x\nä = 1\ny", 1, 5..6, "bad");
         assert_eq!((error.line(), error.column()), (Some(2), Some(3)));
         assert_eq!(error.to_string(), "a.toml:2:3: bad");
+        assert_eq!(format!("{error:?}"), "a.toml:2:3: bad");
         let helped = FileError::whole_file(Path::new("b"), "bad").with_help("do");
         assert_eq!(helped.to_string(), "b: bad\nhelp: do");
     }

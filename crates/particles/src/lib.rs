@@ -115,7 +115,7 @@ pub use format::Format;
 pub use frame::{LengthUnit, NumberColumn, ParticleFrame, Shapes, Trails};
 pub use options::{Columns, FrameChoice, Radii, ReadOptions};
 pub use progress::ReadProgress;
-pub use reader::{FrameCount, Frames, count_frames, read_frame};
+pub use reader::{FrameCount, Frames, count_frames, read_frame, read_frame_after};
 pub use role::Role;
 pub use shared_names::SharedNames;
 pub use superposition::AlignBy;

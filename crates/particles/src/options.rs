@@ -1,6 +1,6 @@
 //! Options of readers: columns, frame, radii.
 
-use crate::{AlignBy, BondSource, Format, ReadProgress, Role, suggest};
+use crate::{AlignBy, BondSource, Element, Format, ReadProgress, Role, suggest};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -137,6 +137,8 @@ pub struct ReadOptions {
     /// The file that says what the particles of a trajectory are: all that its first frame has but
     /// positions, velocities, forces and the cell.
     pub topology: Option<PathBuf>,
+    /// Elements of types, by their names, instead of those of the file.
+    pub elements: Vec<(String, Element)>,
     /// Source of bonds; they are read or found only if they are asked for.
     pub bonds: BondSource,
     /// True if molecules are made whole: no bond crosses the periodic cell.
@@ -173,6 +175,7 @@ impl ReadOptions {
             scale,
             atom_style: _,
             topology: _,
+            elements: _,
             bonds: _,
             whole: _,
             smooth: _,
@@ -206,6 +209,7 @@ impl Default for ReadOptions {
             scale: 1.0,
             atom_style: None,
             topology: None,
+            elements: Vec::new(),
             bonds: BondSource::None,
             whole: false,
             smooth: 0,

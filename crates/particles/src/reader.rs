@@ -2,7 +2,7 @@
 
 use crate::source::{Source, is_standard_input};
 use crate::{
-    AlignBy, BondSource, FileError, Format, FrameChoice, ParticleFrame, ReadOptions,
+    AlignBy, BondSource, Element, FileError, Format, FrameChoice, ParticleFrame, ReadOptions,
     derived::Derived, formats, frame_reader::FrameReader, ids, shapes::ShapeColumns,
     smoothing::Window, sniff, superposition::Reference, topology::Joined, trails::History,
 };
@@ -12,6 +12,8 @@ use std::path::{Path, PathBuf};
 pub struct Frames {
     reader: Box<dyn FrameReader>,
     path: PathBuf,
+    /// Elements of types that are given.
+    elements: Vec<(String, Element)>,
     bonds: BondSource,
     /// The source that is asked for: columns and whole molecules may need bonds of others.
     wanted_bonds: BondSource,
@@ -61,6 +63,7 @@ impl Frames {
         Ok(Self {
             reader,
             path: path.to_owned(),
+            elements: inner.elements,
             bonds: inner.bonds,
             wanted_bonds: options.bonds.clone(),
             whole: options.whole,
@@ -92,6 +95,10 @@ impl Frames {
             let warning =
                 "its particles have no names; --topology FILE reads them from another file";
             frame.warnings.push(warning.to_owned());
+        }
+        for kind in &mut frame.kinds.table {
+            let given = self.elements.iter().rev().find(|(name, _)| *name == kind.name);
+            kind.element = given.map(|(_, element)| *element).or(kind.element);
         }
         let fault = |message: String| FileError::whole_file(&self.path, message);
         self.shapes.apply(&mut frame).map_err(fault)?;
@@ -127,6 +134,27 @@ impl Frames {
         };
         frame.bonds = frame.bonds.filter(|_| has_bonds);
         Ok(Some(frame))
+    }
+
+    /// Passes the frames before this one to `look`, until it returns true. Returns the number of frames that were read.
+    fn look_at(&mut self, index: u64, look: Look) -> Result<u64, FileError> {
+        for read in 0..index {
+            let Some(frame) = self.next().transpose()? else { return Ok(read) };
+            if look(frame)? {
+                return Ok(read + 1);
+            }
+        }
+        Ok(index)
+    }
+
+    /// Returns whether another frame seems to follow.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be read.
+    pub fn more(&mut self) -> Result<bool, FileError> {
+        let is_ahead = self.smoothing.as_ref().is_some_and(Window::has_next);
+        Ok(!self.failed && (is_ahead || self.reader.more()?))
     }
 
     /// Skips the next frame of the file, which isn't averaged with later ones.
@@ -240,15 +268,53 @@ impl Iterator for Frames {
 /// The file cannot be read, is truncated, has no such frame, or is malformed: the error names the
 /// line and the column.
 pub fn read_frame(path: &Path, options: &ReadOptions) -> Result<ParticleFrame, FileError> {
+    Ok(read_after(path, options, None)?.0)
+}
+
+/// Takes a frame, and returns whether no later one is wanted.
+type Look<'a> = &'a mut dyn FnMut(ParticleFrame) -> Result<bool, FileError>;
+
+/// Reads the frame that the options select as [`read_frame`]; before, the frames from the first one on are passed to `look`
+/// until it returns true, or the selected frame is next. Also returns whether the file has several frames.
+///
+/// A first frame that cannot be read is passed over, except where the input can be read only once.
+///
+/// # Errors
+///
+/// Those of [`read_frame`], and those of `look`.
+pub fn read_frame_after(
+    path: &Path,
+    options: &ReadOptions,
+    look: &mut dyn FnMut(ParticleFrame) -> Result<bool, FileError>,
+) -> Result<(ParticleFrame, bool), FileError> {
+    read_after(path, options, Some(look))
+}
+
+fn read_after(
+    path: &Path,
+    options: &ReadOptions,
+    look: Option<Look>,
+) -> Result<(ParticleFrame, bool), FileError> {
     let index = match options.frame {
         FrameChoice::Index(index) => index,
-        FrameChoice::Last if is_standard_input(path) => return last_of_stream(path, options),
+        FrameChoice::Last if is_standard_input(path) => return last_of_stream(path, options, look),
         FrameChoice::Last => count_frames(path, options)?.saturating_sub(1),
     };
     let mut frames = Frames::open(path, options)?;
+    let mut before = 0;
+    if let Some(look) = look.filter(|_| index > 0) {
+        if is_standard_input(path) || !path.is_file() {
+            before = frames.look_at(index, look)?;
+        } else if let Ok(mut first) = Frames::open(path, options) {
+            first
+                .look_at(index, look)
+                .or_else(|error| if first.failed { Ok(0) } else { Err(error) })?;
+        }
+    }
     // Frames that are averaged with the chosen one, or in its trails, are read.
-    let passed = index.saturating_sub(u64::from(options.smooth) + u64::from(options.trail));
-    for before in 0..index {
+    let around = u64::from(options.smooth) + u64::from(options.trail);
+    let passed = if before == 0 { index.saturating_sub(around) } else { 0 };
+    for before in before..index {
         let skipped = if before < passed { frames.pass_frame() } else { frames.skip_frame() };
         if !skipped? {
             let message = format!("has no frame {index}, only {before} (the first is 0)");
@@ -264,21 +330,34 @@ pub fn read_frame(path: &Path, options: &ReadOptions) -> Result<ParticleFrame, F
             return Err(FileError::whole_file(path, message));
         }
     };
-    if options.frame == FrameChoice::default() && frames.reader.more()? {
+    let has_several = index > 0 || frames.more()?;
+    if options.frame == FrameChoice::default() && has_several {
         frame
             .warnings
             .push("only the first of several frames is read; --frame chooses others".to_owned());
     }
-    Ok(frame)
+    Ok((frame, has_several))
 }
 
-/// Returns the last frame of a stream, which can be read only once.
-fn last_of_stream(path: &Path, options: &ReadOptions) -> Result<ParticleFrame, FileError> {
-    let mut last = None;
+/// Returns the last frame of a stream, which can be read only once, and whether it has several.
+fn last_of_stream(
+    path: &Path,
+    options: &ReadOptions,
+    mut look: Option<Look>,
+) -> Result<(ParticleFrame, bool), FileError> {
+    let (mut last, mut has_several) = (None, false);
     for frame in Frames::open(path, options)? {
-        last = Some(frame?);
+        if let Some(before) = last.replace(frame?) {
+            has_several = true;
+            if let Some(wanted) = &mut look
+                && wanted(before)?
+            {
+                look = None;
+            }
+        }
     }
-    last.ok_or_else(|| FileError::whole_file(path, "holds no particles"))
+    let last = last.ok_or_else(|| FileError::whole_file(path, "holds no particles"))?;
+    Ok((last, has_several))
 }
 
 /// Number of frames in a file, counted with as little work as the format allows.

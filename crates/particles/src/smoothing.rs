@@ -48,6 +48,11 @@ impl Window {
         }
     }
 
+    /// Returns whether the next frame is known to exist.
+    pub(crate) fn has_next(&self) -> bool {
+        self.frames.len() > self.center
+    }
+
     /// Replaces the positions of a frame that was just returned by the means of the frames around it. Each
     /// particle is followed from frame to frame by its nearest periodic image.
     pub(crate) fn smooth(&self, path: &Path, frame: &mut ParticleFrame) -> Result<(), FileError> {

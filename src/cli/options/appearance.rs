@@ -30,7 +30,7 @@ pub(in crate::cli) struct AppearanceArgs {
     #[arg(long, value_enum, value_name = "SCHEME", conflicts_with = "color_by")]
     colors: Option<Scheme>,
     /// Color by a column of the file, or by x, y, z, radius, type, element, id, index, coordination (number of
-    /// bonds) or cluster (connected particles, by size): numbers by a color map, strings by a cycle of ten colors.
+    /// bonds), cluster (connected particles, by size) or speed (of vx, vy and vz): numbers by a color map, strings by a cycle of thirty colors.
     /// Names of other programs are accepted, as for --select
     #[arg(long, value_name = "COLUMN")]
     color_by: Option<String>,
@@ -103,10 +103,10 @@ pub(in crate::cli) struct AppearanceArgs {
     arrow_center: Option<ArrowCentering>,
     /// Radius, color, material and opacity of a particle type, by its name or element; overrides all else; may be
     /// repeated. Colors are #rrggbb or CSS names; materials are lambertian, plastic, metal, glass, mirror and
-    /// emitter
+    /// emitter. The element of a type gives it radii, colors and bonds, as in 1:element=O
     #[arg(
         long = "type",
-        value_name = "NAME:radius=R,color=COLOR,material=M,opacity=A",
+        value_name = "NAME:radius=R,color=COLOR,material=M,opacity=A,element=E",
         value_parser = |text: &str| text.parse::<WithText<TypeStyle>>()
     )]
     types: Vec<WithText<TypeStyle>>,

@@ -2,7 +2,9 @@
 
 use super::setup::RenderSetup;
 use crate::cli::options::settings::option_name;
+use crate::cli::source::Source;
 use spherule_render::World;
+use spherule_render::compose::Staged;
 use spherule_render::graphics;
 use spherule_render::image::{Depth, Format};
 use spherule_render::scene::{Integrator, Scene, Settings, Tone};
@@ -68,6 +70,33 @@ pub(super) fn notes(setup: &RenderSetup, scene: &Scene, world: &World) -> Vec<St
     let letters = setup.annotations.lettering();
     note(letters.is_some(), bare, letters.unwrap_or_default(), "the image has no annotations");
     notes
+}
+
+/// Returns a sentence for each option that has no effect on a scene of particles.
+pub(super) fn of_staged(setup: &RenderSetup, staged: &Staged) -> Vec<String> {
+    let Source::Particles(_, options) = &setup.source else { return Vec::new() };
+    if setup.is_of_sequence() {
+        // Other frames may show an effect.
+        return Vec::new();
+    }
+    let (scene, style) = (&staged.scene, &setup.request.style);
+    let is_single = staged.first_frame.is_none();
+    let single = "the file has a single frame";
+    let is_opaque = scene.materials.iter().all(|row| row.material.opacity() >= 1.0);
+    let is_uncut = staged.normals.is_empty();
+    let rules = [
+        (options.smooth > 0 && is_single, "--smooth", single),
+        (options.trail > 0 && is_single, "--trail", single),
+        (!setup.slices.planes().is_empty() && is_uncut, "--slice", "the planes cut nothing"),
+        (style.translucent.is_some() && is_opaque, "--translucent", "no particle is translucent"),
+        (
+            style.bond_radius.is_some() && scene.sticks.is_empty(),
+            "--bond-radius",
+            "no bonds are drawn",
+        ),
+    ];
+    let idle = rules.into_iter().filter(|(is_idle, ..)| *is_idle && !scene.is_empty());
+    idle.map(|(_, name, why)| format!("{name} has no effect: {why}")).collect()
 }
 
 /// Returns the reason why a setting has no effect, if it has none.

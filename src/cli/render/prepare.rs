@@ -1,7 +1,7 @@
 //! Preparation of a render: loads the scene and builds the world.
 
 use super::estimate::Estimate;
-use super::notes::notes;
+use super::notes;
 use super::notices::Notices;
 use super::setup::{RenderSetup, check_alpha};
 use super::visibility;
@@ -19,7 +19,7 @@ use spherule_render::film::Region;
 use spherule_render::prepared::{self, PreparedScene};
 use spherule_render::render::{ImagePart, Render};
 use spherule_render::scene::particles::{
-    self, FrameChoice, Legend, Orientation, Particles, count_frames,
+    FrameChoice, Legend, Orientation, Particles, TrajectoryReader, count_frames,
 };
 use spherule_render::scene::{Denoise, Identity, Scene, Settings};
 use std::path::Path;
@@ -69,7 +69,8 @@ pub(super) fn stage(setup: &RenderSetup, given: Option<Particles>) -> Result<Sta
     let content = match (&setup.source, given) {
         (_, Some(particles)) => Content::Particles(Box::new(particles)),
         (Source::Particles(path, options), None) => {
-            Content::Particles(Box::new(particles::read(path, options)?))
+            let arrows = setup.request.style.arrows.as_ref();
+            Content::Particles(Box::new(TrajectoryReader::default().read(path, options, arrows)?))
         }
         (source, None) => {
             setup.views.refuse_cells()?;
@@ -121,6 +122,8 @@ pub(in crate::cli) struct PlacedScene {
     pub(super) denoise: Option<Choice>,
     /// The world, if the scene is a prepared one.
     pub(super) stored: Option<Box<PreparedScene>>,
+    /// Options without effect on the scene.
+    notes: Vec<String>,
     load: Duration,
 }
 
@@ -141,16 +144,19 @@ impl PlacedScene {
         let angle = setup.turn.map(|turn| setup.views.angle(turn));
         compose::place(&setup.request, &mut staged, shared, angle)
             .map_err(|fault| setup.refuse(fault))?;
-        let Staged { mut scene, legend, orientation, .. } = staged;
+        let notes = notes::of_staged(setup, &staged);
+        let Staged { mut scene, legend, orientation, first_frame, .. } = staged;
         let region = setup.region(&scene.settings)?;
         if setup.part.is_none() {
             picture_file::check_size("render", region, setup.format)?;
         }
         let spheres = scene.spheres.len();
-        let denoise = choose(setup, &mut scene, region, spheres)?;
+        let asked = Asked { first_frame, ..asked(setup) };
+        let denoise = choose(&mut scene, region, spheres, asked)?;
         let asked = setup.checkpoints.file().is_some() || setup.is_identified();
         let identity = asked.then(|| Identity::of(&scene));
-        Ok(Self { scene, legend, orientation, region, identity, denoise, stored: None, load })
+        let stored = None;
+        Ok(Self { scene, legend, orientation, region, identity, denoise, stored, notes, load })
     }
 
     /// Opens a prepared scene, and applies the setup's settings.
@@ -166,15 +172,26 @@ impl PlacedScene {
         if setup.part.is_none() {
             picture_file::check_size("render", region, setup.format)?;
         }
-        let denoise = choose(setup, &mut scene, region, stored.sphere_count())?;
+        let denoise = choose(&mut scene, region, stored.sphere_count(), asked(setup))?;
         let identity = Some(stored.identity.clone());
         let stored = Some(Box::new(stored));
-        Ok(Self { scene, legend: None, orientation: None, region, identity, denoise, stored, load })
+        Ok(Self {
+            scene,
+            legend: None,
+            orientation: None,
+            region,
+            identity,
+            denoise,
+            stored,
+            notes: Vec::new(),
+            load,
+        })
     }
 
     /// Builds the world, unless its estimated memory exceeds the limit.
     pub(super) fn build(self, setup: &RenderSetup) -> Result<Prepared, Failure> {
-        let Self { mut scene, legend, orientation, region, identity, denoise, stored, load } = self;
+        let Self { mut scene, legend, orientation, region, identity, denoise, stored, .. } = self;
+        let (mut notes, load) = (self.notes, self.load);
         let image_part = image_part(setup, region, &scene)?;
         let estimate = Estimate::new(&scene, region, setup, denoise.is_some())
             .of_tiles(image_part.tiles.len())
@@ -204,7 +221,7 @@ impl PlacedScene {
         warnings.extend(dropped(&world));
         warnings.extend(device.refusal());
         let empty = visibility::explain_empty(&world, region, scene.settings.spp);
-        let mut notes = notes(setup, &scene, &world);
+        notes.extend(notes::notes(setup, &scene, &world));
         notes.extend(compose::notes(&scene.annotations));
         Ok(Prepared {
             title: setup.source.title(&scene).into_owned(),
@@ -308,17 +325,22 @@ fn image_part(setup: &RenderSetup, region: Region, scene: &Scene) -> Result<Imag
 /// Completes the settings, and returns how the image is denoised, if at all. `spheres` is the number of spheres, which
 /// the scene itself does not have any more if it was prepared.
 fn choose(
-    setup: &RenderSetup,
     scene: &mut Scene,
     region: Region,
     spheres: usize,
+    asked: Asked,
 ) -> Result<Option<Choice>, Failure> {
-    let asked = Asked { part: setup.part.is_some(), spp: setup.picture.settings.spp().is_some() };
     if asked.part && scene.settings.denoise == Denoise::On {
         let message = "--denoise on needs the whole image; remove it with --part";
         return Err(Failure::usage("render", message));
     }
     Ok(denoise::choose(scene, region, spheres, asked))
+}
+
+/// Returns what the setup asks for.
+fn asked(setup: &RenderSetup) -> Asked {
+    let (part, spp) = (setup.part.is_some(), setup.picture.settings.spp().is_some());
+    Asked { part, spp, first_frame: None }
 }
 
 /// Returns the number of samples of a region.

@@ -24,7 +24,7 @@ use spherule_render::compose::{Fault, Focus, Request, Shared};
 use spherule_render::film::Region;
 use spherule_render::graphics;
 use spherule_render::image::Format;
-use spherule_render::scene::particles::ParticleStyle;
+use spherule_render::scene::particles::{ParticleStyle, TypeStyle};
 use spherule_render::scene::{Background, Preset, Settings};
 use spherule_render::split::{Part, Split};
 use spherule_render::trace::Tracer;
@@ -304,6 +304,8 @@ fn with_columns(source: Source, looks: &ParticleStyle) -> Result<Source, Failure
         Source::Particles(path, mut options) => {
             options.columns.wanted = looks.columns();
             options.bonds = looks.bond_source();
+            let element = |style: &TypeStyle| Some((style.name.clone(), style.element?));
+            options.elements = looks.types.iter().filter_map(element).collect();
             Ok(Source::Particles(path, options))
         }
         other if *looks == ParticleStyle::default() => Ok(other),

@@ -14,8 +14,9 @@ use rayon::prelude::*;
 use spherule_render::World;
 use spherule_render::compose::{self, CellRequest, Labels, Request, Staged, Subject, Value};
 use spherule_render::scene::particles::{
-    self, ArrowSizes, Codes, Coloring, ColumnColors, FrameChoice, Kind, Kinds, Model, NumberColumn,
-    ParticleFrame, ParticleStyle, Particles, ReadOptions, ReadProgress, Role,
+    ArrowSizes, Codes, Coloring, ColumnColors, FrameChoice, Kind, Kinds, Model, NumberColumn,
+    ParticleFrame, ParticleStyle, Particles, ReadOptions, ReadProgress, Role, TrajectoryReader,
+    count_frames,
 };
 use spherule_render::scene::{Rgb, Scene, Spheres};
 use spherule_render::world::framing;
@@ -86,6 +87,7 @@ impl Base {
         setup: &RenderSetup,
         content: &Content,
         before: Option<Self>,
+        trajectory: &mut TrajectoryReader,
         progress: &Progress,
     ) -> Result<Self, Failure> {
         let has_color = |base: &Self| {
@@ -109,7 +111,7 @@ impl Base {
         options.columns.wanted.extend(content.color.clone());
         options.columns.rest = Some(VALUES);
         options.progress = progress.read.clone();
-        let mut particles = particles::read(path, &options)?;
+        let mut particles = trajectory.read(path, &options, setup.request.style.arrows.as_ref())?;
         let more_columns = path.is_file() && has_many_values(&particles);
         // All else is applied to the particles of each picture.
         let (select, model) = (setup.request.style.select.clone(), Some(Model::SpaceFilling));
@@ -202,6 +204,8 @@ fn stage(
 pub(super) struct Loader {
     setup: Arc<RenderSetup<'static>>,
     base: Option<Base>,
+    /// The choices that all frames have in common.
+    trajectory: TrajectoryReader,
     /// Sizes of the arrows of the first frame that had some: those of others compare with them.
     arrow_sizes: Option<ArrowSizes>,
     /// True once loading has started.
@@ -210,7 +214,13 @@ pub(super) struct Loader {
 
 impl Loader {
     pub(super) fn new(setup: Arc<RenderSetup<'static>>) -> Self {
-        Self { setup, base: None, arrow_sizes: None, began: false }
+        Self {
+            setup,
+            base: None,
+            trajectory: TrajectoryReader::default(),
+            arrow_sizes: None,
+            began: false,
+        }
     }
 
     /// Reads the source if necessary, applies colors and materials, and builds the world.
@@ -225,7 +235,7 @@ impl Loader {
             return Err(Failure::Window(READ_ONCE.to_owned()));
         }
         let stamp = stamp(&setup.source);
-        let read = Base::load(setup, content, self.base.take(), progress)?;
+        let read = Base::load(setup, content, self.base.take(), &mut self.trajectory, progress)?;
         let facts = read.facts(setup);
         let many = read.particles.spheres.len() > MANY;
         let (particles, scene) = if many {
@@ -307,7 +317,13 @@ impl Origin {
         if self.stamp != stamp(&self.setup.source) {
             return failed("the file has changed since it was read; open it again");
         }
-        let base = Base::load(&self.setup, &self.content, None, &Progress::default())?;
+        let base = Base::load(
+            &self.setup,
+            &self.content,
+            None,
+            &mut TrajectoryReader::default(),
+            &Progress::default(),
+        )?;
         let (_, staged) = stage(&self.setup, &self.content, None, base.particles, base.scene)?;
         Ok(staged.scene.spheres)
     }
@@ -403,7 +419,7 @@ fn count(path: &Path, options: &ReadOptions, asked: bool) -> Option<u64> {
         return Some(1);
     }
     let short = path.metadata().is_ok_and(|data| data.is_file() && (asked || data.len() < SHORT));
-    short.then(|| particles::count_frames(path, options).ok()).flatten()
+    short.then(|| count_frames(path, options).ok()).flatten()
 }
 
 /// Half the diagonal of the bounding box of all spheres, ellipsoids and cones.

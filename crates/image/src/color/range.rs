@@ -99,6 +99,11 @@ impl Range {
         self.spacing
     }
 
+    /// Returns whether a value has no position: NaN, and 0 or less with logarithmic spacing.
+    pub fn is_undefined(&self, value: f64) -> bool {
+        value.is_nan() || self.spacing == Spacing::Logarithmic && value <= 0.0
+    }
+
     /// Returns the position of a value: 0 at the low end, 1 at the high end, less or more outside; NaN
     /// for NaN. If the ends are equal, their position is 0.5.
     pub fn position(&self, value: f64) -> f64 {

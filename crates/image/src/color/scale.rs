@@ -17,13 +17,13 @@ pub struct Scale {
     pub below: Option<Rgb>,
     /// Color of numbers above the range; `None` for that of its high end.
     pub above: Option<Rgb>,
-    /// Color of NaN.
+    /// Color of NaN, and without `below` of numbers that have no logarithm on a logarithmic scale.
     pub missing: Rgb,
 }
 
 impl Scale {
-    /// Creates a scale. Numbers outside of the range get the colors of its ends; NaN is middle gray,
-    /// `#808080`.
+    /// Creates a scale. Numbers outside of the range get the colors of its ends; NaN, and on a logarithmic scale what has no
+    /// logarithm, is middle gray, `#808080`.
     pub fn new(map: Map, range: Range) -> Self {
         let missing = srgb(0x80_80_80);
         Self { map, reversed: false, range, below: None, above: None, missing }
@@ -50,6 +50,9 @@ impl Scale {
         let position = self.range.position(value);
         let outside = match position {
             position if position.is_nan() => Some(self.missing),
+            position if position < 0.0 && self.range.is_undefined(value) => {
+                self.below.or(Some(self.missing))
+            }
             position if position < 0.0 => self.below,
             position if position > 1.0 => self.above,
             _ => None,
@@ -78,15 +81,16 @@ mod tests {
             (1e9, at(1.0)),
             (f64::INFINITY, at(1.0)),
             (1.0, at(0.0)),
-            (0.0, at(0.0)),
-            (-5.0, at(0.0)),
+            (0.0, srgb(0x80_80_80)),
+            (-5.0, srgb(0x80_80_80)),
             (f64::NAN, srgb(0x80_80_80)),
         ];
         for (value, color) in expected {
             assert_eq!(scale().color(value), color, "{value}");
         }
         let reversed = Scale { reversed: true, ..scale() };
-        for (value, color) in [(10.0, at(1.0)), (1000.0, at(0.0)), (1e9, at(0.0)), (0.0, at(1.0))] {
+        for (value, color) in [(10.0, at(1.0)), (1000.0, at(0.0)), (1e9, at(0.0)), (1e-9, at(1.0))]
+        {
             assert_eq!(reversed.color(value), color, "{value}");
         }
     }

@@ -167,6 +167,8 @@ pub struct Staged {
     pub preset: Option<Preset>,
     /// Normals of the slices that cut anything, toward what is cut away.
     pub normals: Vec<DVec3>,
+    /// Number of particles in the first frame of a file with several, all of whose frames have the same samples.
+    pub first_frame: Option<usize>,
     /// Center of the particle in focus, if the focus is a particle.
     focus: Option<DVec3>,
 }
@@ -211,7 +213,8 @@ impl From<FileError> for Fault {
 impl Request {
     /// Returns the orientation of particles, with the direction that is asked for.
     pub fn orientation(&self, particles: &Particles) -> Orientation {
-        let found = Orientation::of(particles);
+        let of_first = particles.first_frame.as_ref().map(|first| first.orientation);
+        let found = of_first.unwrap_or_else(|| Orientation::of(particles));
         match self.up {
             Some(up) => Orientation { up, reason: UpReason::Chosen, ..found },
             None => found,
@@ -282,6 +285,7 @@ fn of_particles(
     let shared = shared.and_then(|shared| shared.orientation);
     let orientation = shared.unwrap_or_else(|| request.orientation(&particles));
     let arrow_sizes = particles.arrows.sizes;
+    let first_frame = particles.first_frame.as_ref().map(|first| first.spheres);
     let mut labels = Labels::default();
     if request.keeps_labels {
         labels.kinds = std::mem::take(&mut particles.frame.kinds);
@@ -300,6 +304,7 @@ fn of_particles(
         ellipsoid_rows,
         preset: Some(preset),
         normals: Vec::new(),
+        first_frame,
         focus,
     };
     Ok((staged, facts, cell, shows_cell))
@@ -322,6 +327,7 @@ fn of_scene(request: &Request, mut scene: Scene) -> Staged {
         ellipsoid_rows: None,
         preset: request.preset,
         normals: Vec::new(),
+        first_frame: None,
         focus: None,
     }
 }

@@ -1,6 +1,6 @@
 //! When a render stops that is not told, and whether its image is denoised.
 
-use super::{Choice, MAX_ERROR, max_samples};
+use super::{Choice, MAX_ERROR, max_samples, trajectory_samples};
 use crate::film::Region;
 use crate::scene::Scene;
 use crate::settings::Denoise;
@@ -12,6 +12,8 @@ pub struct Asked {
     pub part: bool,
     /// True if the number of samples is.
     pub spp: bool,
+    /// Number of particles in the first frame of a file with several frames; `None` for other scenes.
+    pub first_frame: Option<usize>,
 }
 
 /// Completes the settings of a render of a scene with this many spheres, and returns how it is denoised, if at all. A part
@@ -19,7 +21,8 @@ pub struct Asked {
 /// it is asked for, these very samples are meant.
 ///
 /// Without a stop condition, the render stops where the error of the denoised image is below [`MAX_ERROR`], or at a
-/// number of samples that depends on the scene alone.
+/// number of samples that depends on the scene alone. A frame of a trajectory has [`trajectory_samples`] in all pixels, and is always
+/// denoised: where frames had samples and choices of their own, what does not move would flicker.
 pub fn choose(scene: &mut Scene, region: Region, spheres: usize, asked: Asked) -> Option<Choice> {
     let settings = &mut scene.settings;
     let chosen = settings.until_error.is_some() || asked.spp && settings.time.is_none();
@@ -29,6 +32,10 @@ pub fn choose(scene: &mut Scene, region: Region, spheres: usize, asked: Asked) -
         Denoise::Auto if !chosen => Some(Choice::UnlessWorse),
         Denoise::Auto | Denoise::Off => None,
     };
+    if let Some(first) = asked.first_frame.filter(|_| choice.is_some() && !settings.stop_given) {
+        settings.spp = trajectory_samples(region, first, &scene.materials);
+        return Some(Choice::Always);
+    }
     if choice.is_none() {
         settings.denoise = Denoise::Off;
     } else if !settings.stop_given {
@@ -74,6 +81,18 @@ mod tests {
         };
         let (choice, settings) = chosen(on, spp);
         assert_eq!((choice, settings.spp, settings.until_error), (Some(Choice::Always), 7, None));
+    }
+
+    #[test]
+    fn frames_of_a_trajectory_have_the_same_samples_and_choices() {
+        let first_frame = Asked { first_frame: Some(1000), ..Asked::default() };
+        let (choice, settings) = chosen(|_| (), first_frame);
+        assert_eq!((choice, settings.spp, settings.until_error), (Some(Choice::Always), 32, None));
+        let samples = |settings: &mut Settings| (settings.spp, settings.stop_given) = (7, true);
+        let spp = Asked { spp: true, ..first_frame };
+        assert_eq!(chosen(samples, spp), chosen(samples, Asked { first_frame: None, ..spp }));
+        let part = Asked { part: true, ..first_frame };
+        assert_eq!(chosen(|_| (), part), chosen(|_| (), Asked { first_frame: None, ..part }));
     }
 
     #[test]

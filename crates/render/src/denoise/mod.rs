@@ -51,7 +51,7 @@ mod target;
 mod tile;
 
 pub use choose::{Asked, choose};
-pub use target::{Choice, Denoiser, Judged, MAX_ERROR, max_samples};
+pub use target::{Choice, Denoiser, Judged, MAX_ERROR, max_samples, trajectory_samples};
 
 use self::tile::{TILE, Workspace, tiles};
 use crate::film::{Film, Region, Role};

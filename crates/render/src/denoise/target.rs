@@ -47,6 +47,24 @@ pub fn max_samples(region: Region, spheres: usize, materials: &[NamedMaterial]) 
     samples.clamp(*LIMITS.start(), *LIMITS.end()) as u32
 }
 
+/// Numbers of samples per pixel of the frames of a trajectory whose surfaces scatter light widely, that are translucent, or that
+/// reflect or refract.
+const TRAJECTORY: [u32; 3] = [32, 64, 128];
+
+/// Returns the number of samples per pixel of each frame of a trajectory: by the size of the picture, the number of particles in the
+/// first frame and the kinds of materials alone, so that it is the same in all frames.
+pub fn trajectory_samples(region: Region, spheres: usize, materials: &[NamedMaterial]) -> u32 {
+    let samples = |row: &NamedMaterial| match row.material.surface() {
+        Material::Conductor { .. } | Material::Dielectric { .. } | Material::Reflective { .. } => {
+            TRAJECTORY[2]
+        }
+        _ if row.material.opacity() < 1.0 => TRAJECTORY[1],
+        _ => TRAJECTORY[0],
+    };
+    let samples = materials.iter().map(samples).max().unwrap_or(TRAJECTORY[0]);
+    samples.min(max_samples(region, spheres, materials))
+}
+
 /// Denoises a render, as it is refined, and measures the error of the result.
 pub struct Denoiser {
     choice: Choice,

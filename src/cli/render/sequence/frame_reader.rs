@@ -74,6 +74,11 @@ impl FrameReader {
         Ok(self.reader().take(number)?)
     }
 
+    /// Returns whether another frame seems to follow.
+    pub(super) fn has_more(&mut self) -> Result<bool, Failure> {
+        Ok(self.reader().frames.more()?)
+    }
+
     /// Skips all frames up to this one; returns whether it exists.
     pub(super) fn pass(&mut self, number: u64) -> Result<bool, Failure> {
         Ok(self.reader().pass(number)?)

@@ -25,7 +25,7 @@ use crate::cli::options::appearance::BarPlace;
 use crate::cli::output;
 use crate::cli::picture_file;
 use crate::cli::source::Source;
-use spherule_render::scene::particles::{Coloring, Particles, ReadOptions};
+use spherule_render::scene::particles::{Coloring, Particles, ReadOptions, TrajectoryReader};
 use spherule_render::split::Part;
 use std::path::Path;
 use std::process::ExitCode;
@@ -54,7 +54,7 @@ pub(super) fn run(
         let message = "--frame needs a particle file";
         return Err(Failure::usage("render", message));
     };
-    let mut options = ReadOptions { allow_empty: true, ..ReadOptions::clone(options) };
+    let options = ReadOptions { allow_empty: true, ..ReadOptions::clone(options) };
     let frames = Frames::choose(path, &options, range)?;
     let plan = Plan::new(Some(frames), setup.views.turntable())?;
     let mut setup = setup.clone();
@@ -64,7 +64,6 @@ pub(super) fn run(
     let survey = survey_frames(&setup, &plan, path, &options, &mut reader)?;
     survey.check(path, &setup.request.style)?;
     print_framing(&setup, &plan);
-    survey.fix_radius(&mut options);
     survey.fix_colors(&mut setup.request.style.coloring);
     survey.fix_arrows(setup.request.style.arrows.as_mut());
     let session = Session { video, ..session };
@@ -129,11 +128,12 @@ fn survey_frames(
     options: &ReadOptions,
     reader: &mut FrameReader,
 ) -> Result<Survey, Failure> {
-    let mut survey = Survey::new(!plan.is_stream());
+    let trajectory = trajectory(setup, plan, path, options, reader)?;
+    let mut survey = Survey::new(!plan.is_stream(), trajectory);
     let add = |survey: &mut Survey, number: u64, frame| {
         let particles = survey.particles(path, frame, options)?;
         let setup = RenderSetup { frame: Some(number), ..setup.clone() };
-        survey.add(&setup, particles, options).map_err(|error| error.of_frame(number))
+        survey.add(&setup, particles).map_err(|error| error.of_frame(number))
     };
     if plan.count().is_none() {
         if let Some(number) = plan.shot(0).and_then(|shot| shot.frame)
@@ -159,6 +159,28 @@ fn survey_frames(
         output::warn(format_args!("{error}\nthe frames before it are rendered"));
     }
     Ok(survey)
+}
+
+/// Finds the choices that all frames of the file have in common; of input that can be read only once, by the first frame
+/// alone, which `reader` keeps.
+fn trajectory(
+    setup: &RenderSetup,
+    plan: &Plan,
+    path: &Path,
+    options: &ReadOptions,
+    reader: &mut FrameReader,
+) -> Result<TrajectoryReader, Failure> {
+    let arrows = setup.request.style.arrows.as_ref();
+    if !plan.is_stream() {
+        return Ok(TrajectoryReader::of_file(path, options, arrows));
+    }
+    let mut trajectory = TrajectoryReader::default();
+    if let Some(frame) = reader.look(0)?
+        && reader.has_more()?
+    {
+        trajectory.add_first(path, frame, options, arrows);
+    }
+    Ok(trajectory)
 }
 
 /// Prints which frames the camera shows.

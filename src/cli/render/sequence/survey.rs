@@ -1,5 +1,4 @@
-//! Survey of a sequence before rendering: the camera, the color range and the guessed radius, which all
-//! images share.
+//! Survey of a sequence before rendering: the camera and the color range, which all images share.
 
 use crate::cli::contents::plural;
 use crate::cli::failure::Failure;
@@ -9,7 +8,7 @@ use spherule_render::compose::{self, Shared, Staged};
 use spherule_render::scene::FileError;
 use spherule_render::scene::particles::{
     ArrowSizes, ArrowStyle, Category, Coloring, Orientation, ParticleFrame, ParticleStyle,
-    Particles, Radii, ReadOptions, SharedNames, of_frame,
+    Particles, ReadOptions, TrajectoryReader,
 };
 use spherule_render::world::WorldError;
 use spherule_render::world::framing::SequenceBounds;
@@ -24,10 +23,8 @@ pub(super) struct Survey {
     ends: Option<[f64; 2]>,
     /// True if colors represent numbers, also if no frame has a finite one.
     numeric: bool,
-    /// Types and strings, whose order determines their colors.
-    names: SharedNames,
-    /// The common radius of particles before scaling, if it may have been guessed.
-    radius: Option<f64>,
+    /// The choices by the first frame of the file, and types and strings, whose order determines their colors.
+    trajectory: TrajectoryReader,
     /// The names that colors stand for, if they are asked for.
     categories: Option<Vec<Category>>,
     /// The sizes of arrows in the first frame that has any.
@@ -43,30 +40,23 @@ pub(super) struct Survey {
 
 impl Survey {
     /// Creates a survey of all frames, or only of the first.
-    pub(super) fn new(all: bool) -> Self {
-        Self { all, ..Self::default() }
+    pub(super) fn new(all: bool, trajectory: TrajectoryReader) -> Self {
+        Self { trajectory, all, ..Self::default() }
     }
 
-    /// Returns the particles of a frame, with types and strings in the common order.
+    /// Returns the particles of a frame, with the choices by the first one, and types and strings in the common order.
     pub(super) fn particles(
         &mut self,
         path: &Path,
-        mut frame: ParticleFrame,
+        frame: ParticleFrame,
         options: &ReadOptions,
     ) -> Result<Particles, FileError> {
-        self.names.intern(&mut frame);
-        of_frame(path, frame, options)
+        self.trajectory.particles(path, frame, options)
     }
 
     /// Surveys the particles of a frame.
-    pub(super) fn add(
-        &mut self,
-        setup: &RenderSetup,
-        particles: Particles,
-        options: &ReadOptions,
-    ) -> Result<(), Failure> {
+    pub(super) fn add(&mut self, setup: &RenderSetup, particles: Particles) -> Result<(), Failure> {
         self.frames += 1;
-        let radius = guessed(&particles, options);
         if let Coloring::Column(colors) = &setup.request.style.coloring {
             self.numeric |= colors.is_numeric(&particles);
         }
@@ -89,7 +79,6 @@ impl Survey {
             }
         }
         if self.shown == 1 {
-            self.radius = radius;
             self.warnings = std::mem::take(&mut staged.scene.warnings);
             compose::choose(&setup.request, &mut staged).map_err(|fault| setup.refuse(fault))?;
             compose::leave_room(&mut staged.scene, setup.request.camera.turns);
@@ -106,13 +95,6 @@ impl Survey {
             bounds.add(&scene, &compose::corners(&scene));
         }
         Ok(())
-    }
-
-    /// Sets the radius guessed for the first frame for later frames.
-    pub(super) fn fix_radius(&self, options: &mut ReadOptions) {
-        if let Some(radius) = self.radius {
-            options.radii = Radii::Missing(radius);
-        }
     }
 
     /// Sets the color range of all frames.
@@ -132,7 +114,7 @@ impl Survey {
     /// Returns an error if no frame shows a sphere, or if no frame has particles that an option names.
     pub(super) fn check(&self, path: &Path, looks: &ParticleStyle) -> Result<(), FileError> {
         if self.shown > 0 {
-            looks.check_types(path, &self.names)?;
+            looks.check_types(path, self.trajectory.names())?;
             return match &looks.coloring {
                 Coloring::Column(colors) if self.numeric && self.ends.is_none() => {
                     Err(colors.range_error(path))
@@ -171,12 +153,4 @@ impl Survey {
         let shared = Shared { camera, orientation, ground, categories };
         Ok(Common { shared, frames_all: self.all })
     }
-}
-
-/// The common radius of particles before scaling, if it may have been guessed.
-fn guessed(particles: &Particles, options: &ReadOptions) -> Option<f64> {
-    let elements = particles.frame.kinds.table.iter().any(|kind| kind.element.is_some());
-    let radius = particles.spheres.radius.first()?;
-    // This has no effect for a file with radii.
-    (options.radii == Radii::Auto && !elements).then_some(radius / options.radius_scale)
 }

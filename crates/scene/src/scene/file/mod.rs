@@ -87,8 +87,17 @@ impl Scene {
     ///
     /// A file cannot be read or is not a valid scene: the error says where and what to write.
     pub fn load(path: &Path) -> Result<Self, FileError> {
-        let text = read_text(path)?;
-        Self::parse(&text, &path.to_string_lossy(), path.parent().unwrap_or(Path::new("")))
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let loaded =
+            read_text(path).and_then(|text| Self::parse(&text, &path.to_string_lossy(), folder));
+        loaded.map_err(|error| {
+            let is_named =
+                path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("toml"));
+            if is_named || !path.is_file() {
+                return error;
+            }
+            error.with_help("a scene is a TOML file; `Scene::from_particles` reads particle files")
+        })
     }
 
     /// Reads a scene from text; `name` is its name in messages, and paths in it are relative to
@@ -124,7 +133,8 @@ impl Scene {
 
     /// Makes the same scene of particles that were read before.
     pub fn of_particles(particles: Particles, title: &str) -> Self {
-        let orientation = Orientation::of(&particles);
+        let of_first = particles.first_frame.as_ref().map(|first| first.orientation);
+        let orientation = of_first.unwrap_or_else(|| Orientation::of(&particles));
         let preset = Preset::default();
         let mut scene = preset.scene(particles, title, &orientation);
         preset.light(&mut scene, orientation.up.vector());

@@ -4,6 +4,7 @@
 //! whose spheres have radii and colors.
 
 mod ellipsoids;
+mod first_frame;
 mod model;
 mod orientation;
 mod periodic;
@@ -12,15 +13,17 @@ mod select;
 mod spheres;
 mod style;
 
+pub use first_frame::{FirstFrame, TrajectoryReader};
 pub use model::Model;
 pub use orientation::{Orientation, UpReason};
 pub use periodic::PeriodicError;
-pub use select::{Fault, Selection};
+pub use select::{Fault, MoleculeCensus, Selection};
 pub use spheres::Particles;
 pub use spherule_particles::{
     AlignBy, BondRules, BondSource, Bonds, Cell, Codes, Columns, Element, Format, FrameChoice,
     FrameCount, Frames, Kind, Kinds, LengthUnit, NumberColumn, ParticleFrame, Radii, ReadOptions,
     ReadProgress, Role, Shapes, SharedNames, TextColumn, Trails, count_frames, read_frame,
+    read_frame_after,
 };
 pub use style::{
     ArrowCentering, ArrowSizes, ArrowStyle, Arrows, Category, Coloring, ColumnColors,
@@ -31,13 +34,13 @@ use super::FileError;
 use std::path::Path;
 
 /// Reads the spheres of one frame, chosen by the options, of a file, or of standard input if the path
-/// is `-`.
+/// is `-`. What is guessed of a file with several frames is that of the first one: see [`FirstFrame`].
 ///
 /// # Errors
 ///
 /// The file cannot be read, is cut off, or holds something that is not a particle.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Particles, FileError> {
-    of_frame(path, read_frame(path, options)?, options)
+    TrajectoryReader::default().read(path, options, None)
 }
 
 /// Converts a frame that was read from `path` to spheres, ignoring the options' choice of a frame.
@@ -50,7 +53,21 @@ pub fn of_frame(
     frame: ParticleFrame,
     options: &ReadOptions,
 ) -> Result<Particles, FileError> {
-    spheres::spheres(path, frame, options)
+    of_frame_in(path, frame, options, None)
+}
+
+/// Converts a frame to spheres as [`of_frame`], with the choices by the first frame, if there are several.
+///
+/// # Errors
+///
+/// The same.
+pub fn of_frame_in(
+    path: &Path,
+    frame: ParticleFrame,
+    options: &ReadOptions,
+    first_frame: Option<FirstFrame>,
+) -> Result<Particles, FileError> {
+    spheres::spheres(path, frame, options, first_frame)
 }
 
 #[cfg(test)]

@@ -51,6 +51,8 @@ pub struct Orientation {
     pub reason: UpReason,
     /// Orthographic for a periodic cell full of particles, or else a long lens.
     pub projection: Projection,
+    /// The side of a single layer that is seen; `None` for the usual view from a corner.
+    pub front: Option<Axis>,
 }
 
 /// A reason why a direction is up.
@@ -105,27 +107,32 @@ impl Orientation {
         let cell = cell.filter(|_| !molecules);
         let radius = median_radius(spheres);
         let gaps = cell.map(|cell| gaps(spheres, cell));
+        let front = layer(spheres, radius);
         let found = || {
-            let layer = || Some((layer(spheres, radius)?, UpReason::Layer));
             let slab = || Some((slab(cell?)?, UpReason::Slab));
             let vacuum = || Some((vacuum(cell?, gaps?, radius)?, UpReason::Vacuum));
             let bed = || Some((bed(spheres, radius)?, UpReason::Bed));
-            layer().or_else(slab).or_else(vacuum).or_else(bed)
+            slab().or_else(vacuum).or_else(bed)
         };
-        let (up, reason) = match found().filter(|_| !molecules) {
-            Some(found) => found,
+        let (up, reason) = match front {
+            Some(Axis::Z) => (Axis::Y, UpReason::Layer),
+            Some(_) => (Axis::Z, UpReason::Layer),
             None if molecules => (Axis::Y, UpReason::Molecule),
-            None => (Axis::Z, UpReason::Convention(particles.frame.format)),
+            None => found().unwrap_or((Axis::Z, UpReason::Convention(particles.frame.format))),
         };
         let full = cell.is_some_and(|cell| is_full(spheres, cell, gaps));
         let projection =
             if full { Projection::Orthographic { height: None } } else { Camera::LONG_LENS };
-        Self { up, reason, projection }
+        Self { up, reason, projection, front }
     }
 
     /// Returns a camera that frames all particles.
     pub fn camera(&self) -> Camera {
-        let direction = Camera::fit_direction(self.up);
+        let side = |front: &Axis| front.vector().dot(self.up.vector()) == 0.0;
+        let direction = match self.front.filter(side) {
+            Some(front) => -front.vector(),
+            None => Camera::fit_direction(self.up),
+        };
         Camera {
             projection: self.projection,
             pose: Pose::Fit { direction, margin: Camera::FIT_MARGIN },
@@ -149,7 +156,7 @@ fn median_radius(spheres: &Spheres) -> f64 {
 }
 
 /// Returns the lower and upper corner of the box of all centers.
-fn bounds_of_centers(spheres: &Spheres) -> [DVec3; 2] {
+pub(super) fn bounds_of_centers(spheres: &Spheres) -> [DVec3; 2] {
     let ends = |column: &[f64]| {
         let low = column.par_iter().copied().reduce(|| f64::INFINITY, f64::min);
         [low, column.par_iter().copied().reduce(|| f64::NEG_INFINITY, f64::max)]
@@ -158,7 +165,7 @@ fn bounds_of_centers(spheres: &Spheres) -> [DVec3; 2] {
     [DVec3::new(x[0], y[0], z[0]), DVec3::new(x[1], y[1], z[1])]
 }
 
-/// Returns what is up in a view of a single layer that is perpendicular to a coordinate axis.
+/// Returns the side from which a single layer is seen that is perpendicular to a coordinate axis.
 fn layer(spheres: &Spheres, radius: f64) -> Option<Axis> {
     if spheres.len() < 3 {
         return None;
@@ -168,9 +175,9 @@ fn layer(spheres: &Spheres, radius: f64) -> Option<Axis> {
     let thin = |axis: usize| size[axis] < 2.0 * (LAYER - 1.0) * radius;
     let wide = |axis: usize| size[axis] > 4.0 * radius;
     match [0, 1, 2].map(thin) {
-        [false, false, true] if wide(0) && wide(1) => Some(Axis::Y),
-        [false, true, false] if wide(0) && wide(2) => Some(Axis::Z),
-        [true, false, false] if wide(1) && wide(2) => Some(Axis::Z),
+        [false, false, true] if wide(0) && wide(1) => Some(Axis::Z),
+        [false, true, false] if wide(0) && wide(2) => Some(Axis::NegY),
+        [true, false, false] if wide(1) && wide(2) => Some(Axis::X),
         _ => None,
     }
 }
@@ -427,8 +434,17 @@ mod tests {
                 panic!("it frames the layer")
             };
             let facing = direction.normalize().dot(normal.vector()).abs();
-            assert!(facing > 0.4, "{normal:?} {facing}");
+            assert_eq!(facing, 1.0, "{normal:?}");
+            // Another direction that is up is that of the image, unless it is the layer's normal.
+            for (_, up) in Axis::ALL {
+                let chosen = Orientation { up, ..Orientation::of(&layer) };
+                let Pose::Fit { direction, .. } = chosen.camera().pose else { panic!("a fit") };
+                let is_normal = up == normal || up == normal.opposite();
+                assert_eq!(direction == Camera::fit_direction(up), is_normal, "{normal:?} {up:?}");
+            }
         }
+        // A flat molecule is one, too.
+        assert_eq!(found(&particles(Format::Xyz, lattice([9, 9, 1]))), (Axis::Y, UpReason::Layer));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::radii::{FoundRadii, half_spacing, radii};
 use super::style::{Arrows, Column, ElementColors, ID, INDEX, TypeMaterial};
-use super::{Cell, ParticleFrame, ReadOptions, TextColumn};
+use super::{Cell, FirstFrame, ParticleFrame, ReadOptions, TextColumn};
 use crate::color::category;
 use crate::memory;
 use crate::scene::{FileError, NamedMaterial, Rgb, Spheres};
@@ -28,6 +28,10 @@ pub struct Particles {
     pub arrows: Arrows,
     /// Chosen materials, by names in `material_names`; the others are defined by the scene.
     pub materials: Vec<NamedMaterial>,
+    /// The radius of all before scaling, if it is guessed.
+    pub guessed_radius: Option<f64>,
+    /// The choices that all frames of the file have in common, if it has several.
+    pub first_frame: Option<FirstFrame>,
 }
 
 impl Particles {
@@ -84,6 +88,7 @@ pub(super) fn spheres(
     path: &Path,
     mut frame: ParticleFrame,
     options: &ReadOptions,
+    first_frame: Option<FirstFrame>,
 ) -> Result<Particles, FileError> {
     options.check().map_err(|message| FileError::whole_file(path, message))?;
     let mut warnings = Warnings { path, list: Vec::new() };
@@ -103,8 +108,10 @@ pub(super) fn spheres(
     let FoundRadii { radius, guessed } = radii(path, &mut frame, options, &mut warnings)?;
     frame.radius = radius;
     drop_rows(path, &mut frame, options, &mut warnings)?;
-    if guessed && !frame.is_empty() {
-        let radius = half_spacing([&frame.x, &frame.y, &frame.z]);
+    let of_first = first_frame.as_ref().and_then(|first| first.guessed_radius);
+    let guessed_radius = (guessed && !frame.is_empty())
+        .then(|| of_first.unwrap_or_else(|| half_spacing([&frame.x, &frame.y, &frame.z])));
+    if let Some(radius) = guessed_radius {
         frame.radius.fill(radius * options.radius_scale);
         warnings.add(&format!(
             "no radii in the file, using half of the mean spacing: radius = {radius}"
@@ -128,7 +135,9 @@ pub(super) fn spheres(
     };
     let material_names = material_names(std::mem::take(&mut frame.materials));
     frame.warnings = warnings.list;
-    Ok(Particles { spheres, frame, material_names, ..Particles::default() })
+    let mut particles = Particles { spheres, frame, material_names, ..Particles::default() };
+    (particles.guessed_radius, particles.first_frame) = (guessed_radius, first_frame);
+    Ok(particles)
 }
 
 /// Returns the bytes of the columns that spheres have in addition to the frame's.

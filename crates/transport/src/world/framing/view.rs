@@ -137,7 +137,8 @@ mod tests {
     fn views_from_sides_have_what_is_up_on_top() {
         for (_, up) in Axis::ALL {
             let reason = UpReason::Chosen;
-            let orientation = Orientation { up, reason, projection: Camera::LONG_LENS };
+            let orientation =
+                Orientation { up, reason, projection: Camera::LONG_LENS, front: None };
             for (name, side) in Axis::ALL {
                 let camera = View::Side(side).camera(&Scene::default(), Some(&orientation));
                 let Pose::Fit { direction, .. } = camera.pose else { panic!("it frames all") };

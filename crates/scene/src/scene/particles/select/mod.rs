@@ -10,12 +10,14 @@
 //! is proportional to the length of the condition times the number of particles.
 
 mod bind;
+mod census;
 mod grammar;
 mod lists;
 mod spatial;
 mod vocabulary;
 mod words;
 
+pub use self::census::MoleculeCensus;
 use self::grammar::{Node, Tree};
 use super::style::add_numbers;
 use super::{AlignBy, ParticleFrame, Particles};

@@ -10,7 +10,7 @@ pub(super) const RESIDUE: &str = "residue";
 pub(super) const RESIDUE_COLUMNS: [&str; 5] = ["resid", "resname", "chain", "segid", "icode"];
 
 /// Names of residues and of atoms.
-const RESNAME: &str = "resname";
+pub(super) const RESNAME: &str = "resname";
 const NAME: &str = "name";
 const ELEMENT: &str = "element";
 
@@ -130,6 +130,18 @@ impl Group {
             | Self::AlphaCarbons
             | Self::NucleicBackbone
             | Self::Bases => &[RESNAME, NAME],
+        }
+    }
+
+    /// Returns whether residues of a name are of the group.
+    pub(super) fn has_residue(self, name: &str) -> bool {
+        match self {
+            Self::Protein => PROTEIN.contains(&name),
+            Self::Nucleic => NUCLEIC.contains(&name),
+            Self::Water => WATER.contains(&name),
+            Self::Ions => IONS.contains(&name),
+            Self::Lipids => LIPIDS.contains(&name),
+            _ => false,
         }
     }
 

@@ -3,6 +3,7 @@
 use super::columns::{Column, missing};
 use crate::scene::particles::Particles;
 use crate::scene::particles::model::median;
+use crate::scene::particles::orientation::bounds_of_centers;
 use crate::scene::{FileError, Rgb};
 use glam::DVec3;
 use spherule_particles::internals::retain;
@@ -22,6 +23,9 @@ const USUAL_LENGTH: f64 = 4.0;
 
 /// Radius of the shaft of the median arrow, relative to the median radius of particles, where none is given.
 const USUAL_RADIUS: f64 = 0.25;
+
+/// Length of an arrow, relative to that of the median vector, from which it may be an outlier that is shortened.
+const OUTLIER: f64 = 10.0;
 
 /// Radius of an arrow's head, relative to that of its shaft, as in OVITO.
 const HEAD_RADIUS: f64 = 2.5;
@@ -112,12 +116,11 @@ impl ArrowStyle {
         Self { columns, scale: None, radius: None, color: None, centering: ArrowCentering::Tail }
     }
 
-    /// Gives particles their arrows. Vectors that are 0 or not finite have none.
+    /// Gives particles their arrows. Vectors that are 0 or not finite have none; arrows that would be longer than all else,
+    /// and far longer than the others, are shortened.
     pub(super) fn apply(&self, path: &Path, particles: &mut Particles) -> Result<(), FileError> {
-        let vectors = self.vectors(path, particles)?;
-        let lengths: Vec<f64> =
-            vectors.iter().map(|v| v.length()).filter(|&v| v > 0.0 && v.is_finite()).collect();
-        let Some(vector) = median(&lengths) else {
+        let mut vectors = self.vectors(path, particles)?;
+        let Some((own, limit)) = self.sizes_of(&vectors, particles) else {
             particles.frame.warnings.push(format!(
                 "{}: no arrows, as all vectors of {} are 0 or missing",
                 path.display(),
@@ -125,16 +128,57 @@ impl ArrowStyle {
             ));
             return Ok(());
         };
-        let size = median(&particles.spheres.radius).unwrap_or(1.0);
-        let scale = self.scale.unwrap_or(USUAL_LENGTH * size / vector);
-        let radius = self.radius.unwrap_or(USUAL_RADIUS * size);
+        let first_frame = particles.first_frame.as_ref();
+        let of_first = first_frame.and_then(|first| first.arrow_sizes);
+        let scale = self.scale.or(of_first.map(|sizes| sizes.scale)).unwrap_or(own.scale);
+        let radius = self.radius.or(of_first.map(|sizes| sizes.radius)).unwrap_or(own.radius);
+        let limit = first_frame.and_then(|first| first.arrow_limit).unwrap_or(limit);
+        let mut shortened = 0_u64;
+        for vector in &mut vectors {
+            *vector *= scale;
+            let length = vector.length();
+            if length > limit && length.is_finite() {
+                *vector *= limit / length;
+                shortened += 1;
+            }
+        }
+        if shortened > 0 {
+            let file = path.display();
+            particles.frame.warnings.push(format!(
+                "{file}: arrows shortened to {limit:.3}: {shortened}, longer than the whole picture and more than \
+                 {OUTLIER} times the median; --select leaves their particles out"
+            ));
+        }
         particles.arrows = Arrows {
-            vectors: vectors.iter().map(|&vector| vector * scale).collect(),
+            vectors,
             sizes: Some(ArrowSizes { scale, radius }),
             before: self.centering.share(),
             color: self.color,
         };
         Ok(())
+    }
+
+    /// Returns the sizes of the arrows of particles, and the length to which they are limited; `None` if all vectors are 0 or
+    /// missing.
+    pub(in crate::scene::particles) fn sizes(
+        &self,
+        path: &Path,
+        particles: &Particles,
+    ) -> Result<Option<(ArrowSizes, f64)>, FileError> {
+        Ok(self.sizes_of(&self.vectors(path, particles)?, particles))
+    }
+
+    fn sizes_of(&self, vectors: &[DVec3], particles: &Particles) -> Option<(ArrowSizes, f64)> {
+        let lengths: Vec<f64> =
+            vectors.iter().map(|v| v.length()).filter(|&v| v > 0.0 && v.is_finite()).collect();
+        let vector = median(&lengths)?;
+        let size = median(&particles.spheres.radius).unwrap_or(1.0);
+        let scale = self.scale.unwrap_or(USUAL_LENGTH * size / vector);
+        let radius = self.radius.unwrap_or(USUAL_RADIUS * size);
+        let [low, high] = bounds_of_centers(&particles.spheres);
+        let extent = if vectors.is_empty() { 0.0 } else { low.distance(high) };
+        let limit = f64::max(extent, OUTLIER * scale * vector);
+        Some((ArrowSizes { scale, radius }, limit))
     }
 
     /// Takes the sizes of other arrows for those that were not chosen.

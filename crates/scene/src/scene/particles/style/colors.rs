@@ -77,10 +77,13 @@ impl ColumnColors {
     ) -> Result<Option<Legend>, FileError> {
         let column = Column::find(particles, &self.column)
             .ok_or_else(|| columns::missing(path, particles, &self.column))?;
+        let mut undefined = 0;
         let (colors, legend, missing) = match &column {
             Column::Numbers(values) => match self.scale(values) {
                 Ok(scale) => {
                     let legend = Legend { scale, label: self.label(particles.frame.unit) };
+                    let has_no_place = |value: &&f64| scale.range.is_undefined(**value);
+                    undefined = values.iter().filter(has_no_place).count() - missing(values);
                     (scale.colors(values), Some(legend), missing(values))
                 }
                 Err(RangeError::Empty | RangeError::NonePositive) if allow_empty => {
@@ -98,6 +101,14 @@ impl ColumnColors {
             let (path, name) = (path.display(), &self.column);
             let warning = format!(
                 "{path}: {missing} particles have no value of `{name}` and are drawn in gray"
+            );
+            particles.frame.warnings.push(warning);
+        }
+        if undefined > 0 {
+            let (path, name) = (path.display(), &self.column);
+            let warning = format!(
+                "{path}: {undefined} particles have a `{name}` of 0 or less, which has no place on a logarithmic \
+                 scale, and are drawn in gray"
             );
             particles.frame.warnings.push(warning);
         }

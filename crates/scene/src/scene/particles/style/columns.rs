@@ -24,6 +24,9 @@ const COMMON: [(&str, Role); 5] = [
     ("type", Role::Kind),
 ];
 
+/// Name of the length of velocities, and the columns of their components.
+pub(super) const SPEED: (&str, [&str; 3]) = ("speed", ["vx", "vy", "vz"]);
+
 /// Name of the column of elements, or of types that are not elements.
 const ELEMENT: &str = "element";
 
@@ -45,6 +48,20 @@ impl<'p> Column<'p> {
         Self::of(particles, |own| own == name)
             .or_else(|| any_case(name))
             .or_else(|| aliases::of(name).find_map(any_case))
+            .or_else(|| {
+                if name.eq_ignore_ascii_case(SPEED.0) { Self::of_speeds(particles) } else { None }
+            })
+    }
+
+    /// The lengths of velocities whose components the file has.
+    fn of_speeds(particles: &'p Particles) -> Option<Self> {
+        let [x, y, z] = SPEED.1.map(|name| match Self::find(particles, name) {
+            Some(Self::Numbers(values)) => Some(values),
+            Some(Self::Texts { .. }) | None => None,
+        });
+        let (x, y, z) = (x?, y?, z?);
+        let speeds = x.iter().zip(&*y).zip(&*z).map(|((x, y), z)| (x * x + y * y + z * z).sqrt());
+        Some(Self::Numbers(speeds.collect()))
     }
 
     fn of(particles: &'p Particles, named: impl Fn(&str) -> bool) -> Option<Self> {

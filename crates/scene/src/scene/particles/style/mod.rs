@@ -10,6 +10,7 @@ mod types;
 pub use arrows::{ArrowCentering, ArrowSizes, ArrowStyle, Arrows, VectorColumns};
 pub use categories::Category;
 pub use colors::{ColumnColors, ElementColors, Legend};
+use columns::SPEED;
 pub(super) use columns::{Column, ID, INDEX, unknown};
 pub use opacity::{GHOST, Opacity};
 pub use types::{TypeMaterial, TypeStyle};
@@ -70,6 +71,9 @@ impl ParticleStyle {
     /// [`Columns::wanted`](super::Columns::wanted).
     pub fn columns(&self) -> Vec<String> {
         let mut columns = self.typed_columns();
+        if columns.iter().any(|name| name.eq_ignore_ascii_case(SPEED.0)) {
+            columns.extend(SPEED.1.map(str::to_owned));
+        }
         for at in 0..columns.len() {
             let others = aliases::of(&columns[at]).map(str::to_owned).collect::<Vec<_>>();
             columns.extend(others);
@@ -144,6 +148,15 @@ impl ParticleStyle {
             arrows.apply(path, particles)?;
         }
         let has_bonds = self.bond_source() != BondSource::None && particles.frame.bonds.is_some();
+        if self.bond_source() == BondSource::Auto && !has_bonds {
+            let first = particles.frame.kinds.table.first().map_or("NAME", |kind| &kind.name);
+            let warning = format!(
+                "{}: no bonds to draw, as the file has none and no particle has an element by which they could be \
+                 found; name elements, as in --type {first}:element=O",
+                path.display()
+            );
+            particles.frame.warnings.push(warning);
+        }
         let usual = if has_bonds { Model::BallAndStick } else { Model::SpaceFilling };
         self.model.unwrap_or(usual).apply(particles, self.bond_radius);
         let table = &particles.frame.kinds.table;

@@ -1,7 +1,7 @@
 use super::*;
 use crate::color::elements::cpk;
 use crate::color::{Map, RangeError, Spacing, category, srgb};
-use crate::scene::particles::{Columns, LengthUnit, Radii, ReadOptions, read};
+use crate::scene::particles::{Columns, Element, LengthUnit, Radii, ReadOptions, read};
 use crate::scene::{Material, Rgb, Scene};
 use glam::DVec3;
 
@@ -228,7 +228,7 @@ fn unknown_types_are_reported_with_known_ones() {
         ("N:colour=red", "did you mean `color`"),
         ("N:opacity=1.5", "`1.5` is not a valid opacity"),
         ("N:opacity=nan", "`nan` is not a valid opacity"),
-        ("N:size=1", "`size` is not radius, color, material or opacity"),
+        ("N:size=1", "`size` is not radius, color, material, opacity or element"),
     ] {
         let error = text.parse::<TypeStyle>().expect_err(text);
         assert!(error.contains(expected), "{text}: {error}");
@@ -414,4 +414,59 @@ fn vectors_that_are_not_there_are_refused_by_name() {
     let (particles, _) = apply(&zero, &with_arrows("velocity", |_| ())).expect("no arrows");
     assert!(particles.arrows.sizes.is_none());
     assert!(particles.frame.warnings.iter().any(|text| text.contains("no arrows")));
+}
+
+#[test]
+fn numbers_without_a_logarithm_are_gray_and_counted() {
+    let csv = "x,y,z,radius,p\n0,0,0,1,-1\n1,0,0,1,0\n2,0,0,1,1\n3,0,0,1,100\n4,0,0,1,\n";
+    let logarithmic = ColumnColors { spacing: Spacing::Logarithmic, ..by("p") };
+    let (particles, legend) = apply(csv, &colored(logarithmic)).expect("colors");
+    let (gray, at) = (srgb(0x80_80_80), |position: f64| Map::Viridis.at(position));
+    assert_eq!(particles.spheres.color, [gray, gray, at(0.0), at(1.0), gray]);
+    assert_eq!(legend.expect("a legend").scale.range.low(), 1.0);
+    let counts = |text: &str| particles.frame.warnings.iter().any(|own| own.contains(text));
+    assert!(counts(": 2 particles") && counts(": 1 particles"), "{:?}", particles.frame.warnings);
+}
+
+#[test]
+fn speeds_are_lengths_of_velocities() {
+    let csv = "x,y,z,radius,vx,vy,vz\n0,0,0,1,3,4,0\n1,0,0,1,0,0,1\n";
+    let (_, legend) = apply(csv, &colored(by("speed"))).expect("colors");
+    let range = legend.expect("a legend").scale.range;
+    assert_eq!((range.low(), range.high()), (1.0, 5.0));
+    let select = Some("speed > 2".parse().expect("a selection"));
+    let fast =
+        apply(csv, &ParticleStyle { select, ..ParticleStyle::default() }).expect("particles");
+    assert_eq!(fast.0.spheres.x, [0.0]);
+    assert!(apply("x,y,z,radius\n0,0,0,1\n", &colored(by("speed"))).is_err());
+}
+
+#[test]
+fn arrows_that_are_far_longer_than_all_else_are_shortened() {
+    let row = |x: usize| format!("{x},0,0,0.5,0,1,0\n");
+    let rows: String = (0..20).map(row).collect();
+    let csv = |last: &str| format!("x,y,z,radius,vx,vy,vz\n{rows}0,0,0,0.5,{last}\n");
+    let arrows = Some(ArrowStyle::new("velocity".parse().expect("a vector")));
+    let style = ParticleStyle { arrows, ..ParticleStyle::default() };
+    for (last, length, warned) in [("1e4,0,0", 20.0, true), ("9,0,0", 18.0, false)] {
+        let (particles, _) = apply(&csv(last), &style).expect("arrows");
+        let sizes = particles.arrows.sizes.expect("sizes");
+        assert_eq!(sizes.scale, 2.0, "{last}");
+        let lengths: Vec<f64> = particles.arrows.vectors.iter().map(|v| v.length()).collect();
+        assert_eq!((lengths[0], lengths[20]), (2.0, length), "{last}");
+        let warning = particles.frame.warnings.iter().any(|text| text.contains(": 1, "));
+        assert_eq!(warning, warned, "{:?}", particles.frame.warnings);
+    }
+}
+
+#[test]
+fn models_without_bonds_say_how_to_get_them() {
+    let model = Some(Model::BallAndStick);
+    let style = ParticleStyle { model, ..ParticleStyle::default() };
+    let (particles, _) = apply(DUMP, &style).expect("particles");
+    let mends = |text: &String| text.contains("--type 1:element=O");
+    assert_eq!(particles.frame.warnings.iter().filter(|text| mends(text)).count(), 1);
+    let element: TypeStyle = "1:element=o".parse().expect("a style");
+    assert_eq!(element.element.map(Element::symbol), Some("O"));
+    assert!("1:element=Xx".parse::<TypeStyle>().is_err());
 }

@@ -85,12 +85,15 @@ pub struct TypeStyle {
     pub material: Option<TypeMaterial>,
     /// The opacity, 0 to 1.
     pub opacity: Option<f64>,
+    /// The element, by which radii, colors and bonds are found; it must be known as the file is read:
+    /// [`ReadOptions::elements`](crate::scene::particles::ReadOptions::elements).
+    pub element: Option<Element>,
 }
 
 impl FromStr for TypeStyle {
     type Err = String;
 
-    /// Parses `NAME:radius=R,color=#rrggbb,material=NAME,opacity=A`, in which entries may be missing.
+    /// Parses `NAME:radius=R,color=#rrggbb,material=NAME,opacity=A,element=O`, in which entries may be missing.
     fn from_str(text: &str) -> Result<Self, String> {
         let usage =
             "expected a type and its style, as in Na:radius=1.2,color=#ab5cf2,material=glass";
@@ -103,11 +106,12 @@ impl FromStr for TypeStyle {
                 "color" => style.color = Some(color::of_name(value.trim())?),
                 "material" => style.material = Some(material(value.trim())?),
                 "opacity" => style.opacity = Some(opacity(value.trim())?),
+                "element" => style.element = Some(element(value.trim())?),
                 other => {
-                    let names = ["radius", "color", "material", "opacity"];
+                    let names = ["radius", "color", "material", "opacity", "element"];
                     let near = suggest::question(other, names);
                     return Err(format!(
-                        "`{other}` is not radius, color, material or opacity{near}"
+                        "`{other}` is not radius, color, material, opacity or element{near}"
                     ));
                 }
             }
@@ -126,6 +130,11 @@ fn opacity(text: &str) -> Result<f64, String> {
     opacity.ok_or_else(|| format!("`{text}` is not a valid opacity: write a number from 0 to 1"))
 }
 
+fn element(text: &str) -> Result<Element, String> {
+    Element::from_symbol(text)
+        .ok_or_else(|| format!("`{text}` is not an element: write its symbol, as in O"))
+}
+
 fn material(text: &str) -> Result<TypeMaterial, String> {
     let found = TypeMaterial::ALL.iter().find(|(name, _)| *name == text);
     found.map(|(_, material)| *material).ok_or_else(|| {
@@ -138,7 +147,7 @@ fn material(text: &str) -> Result<TypeMaterial, String> {
 impl TypeStyle {
     /// Checks that radius and color are in their ranges.
     pub(super) fn check(&self) -> Result<(), String> {
-        let Self { name, radius, color, material: _, opacity } = self;
+        let Self { name, radius, color, material: _, opacity, element: _ } = self;
         if let Some(opacity) = opacity.filter(|opacity| !(0.0..=1.0).contains(opacity)) {
             return Err(format!("`opacity` of the type `{name}` is {opacity}, but must be 0 to 1"));
         }

@@ -198,3 +198,68 @@ fn progress_is_a_fraction_of_the_file() {
     frame_with(dump(1), &options).expect("a frame");
     assert_eq!(options.progress.fraction(), Some(1.0));
 }
+
+/// A frame of a lattice of points without an element, 5 in each direction, `spacing` apart along z.
+fn lattice(spacing: f64, names: [&str; 2]) -> String {
+    let rows = (0..125).map(|i| {
+        let (x, y, z) = (i / 25, i / 5 % 5, f64::from(i % 5) * spacing);
+        format!("{} {x} {y} {z}\n", names[usize::from(i % 2 == 1)])
+    });
+    format!("125\nLattice=\"9 0 0 0 9 0 0 0 40\"\n{}", rows.collect::<String>())
+}
+
+#[test]
+fn guesses_are_those_of_the_first_frame_that_has_particles() {
+    let empty = "0\n\n".to_owned();
+    // The second frame is a single layer, and has its names in another order.
+    let text = empty
+        + &lattice(1.0, ["Xa", "Xb"])
+        + &lattice(0.0, ["Xb", "Xa"])
+        + &lattice(8.0, ["Xa", "Xb"]);
+    let options = |frame: &str| ReadOptions { allow_empty: true, ..at_frame(frame) };
+    let of = |frame: &str| read_with(&text, &options(frame)).expect("a frame");
+    let first = of("1");
+    let radius = first.guessed_radius.expect("a guess");
+    for frame in ["1", "2", "3", "last"] {
+        let particles = of(frame);
+        assert_eq!(particles.spheres.radius, vec![radius; 125], "{frame}");
+        let film = particles.first_frame.expect("the first frame");
+        assert_eq!((film.spheres, film.guessed_radius), (125, Some(radius)));
+        assert_eq!(film.orientation, Orientation::of(&first), "{frame}");
+        let names = particles.frame.kinds.table.iter().map(|kind| kind.name.as_str());
+        assert_eq!(names.collect::<Vec<_>>(), ["Xa", "Xb"], "{frame}");
+    }
+    assert_eq!(Orientation::of(&of("2")).reason, UpReason::Layer);
+    // A single frame has guesses of its own.
+    let alone = particles(lattice(8.0, ["Xa", "Xb"]));
+    assert!(alone.first_frame.is_none() && alone.guessed_radius > Some(radius));
+    // A first frame that cannot be read is that of others.
+    let broken = text.replacen("Xa 0 0 0", "Xa zero 0 0", 1);
+    assert!(read_with(&broken, &options("1")).is_err());
+    assert_eq!(read_with(&broken, &options("2")).expect("a frame").spheres.len(), 125);
+}
+
+#[test]
+fn readers_of_trajectories_remember_the_first_frame() {
+    let text = lattice(1.0, ["Xa", "Xb"]) + &lattice(3.0, ["Xa", "Xb"]);
+    in_file(&text, |path| {
+        let mut reader = TrajectoryReader::default();
+        let mut at = |frame: &str| reader.read(path, &at_frame(frame), None).expect("a frame");
+        let last = at("1");
+        assert_eq!(last.guessed_radius, at("0").guessed_radius);
+        assert_eq!(last.first_frame, at("1").first_frame);
+        let (_, first) =
+            TrajectoryReader::default().read_frame(path, &at_frame("0")).expect("a frame");
+        assert_eq!(first, last.first_frame);
+    });
+}
+
+#[test]
+fn elements_of_types_may_be_given() {
+    let oxygen = Element::from_symbol("O").expect("an element");
+    let elements = vec![("A".to_owned(), oxygen)];
+    let options = ReadOptions { elements, ..ReadOptions::default() };
+    let particles = read_with("2\n\nA 0 0 0\nB 5 0 0\n", &options).expect("particles");
+    assert_eq!(kinds(&ParticleFrame { x: vec![0.0; 2], ..particles.frame.clone() })[0].1, "O");
+    assert_eq!(particles.spheres.radius[0], oxygen.van_der_waals_radius().expect("a radius"));
+}
