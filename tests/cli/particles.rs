@@ -283,3 +283,40 @@ fn frames_are_made_whole_aligned_and_smoothed() {
         assert!(output.status.code() != Some(0) && stderr.contains(part), "{line}: {stderr}");
     }
 }
+
+#[test]
+fn info_says_what_one_needs_before_drawing() {
+    let folder = Folder::new();
+    folder.write("a.csv", "x,y,z,radius,q,chain\n0,0,0,1,2.5,A\n1,0,0,1,,B\n2,0,0,1,-1,A\n");
+    let info = folder.json(&["info", "a.csv", "--json"]);
+    let columns = info["particles"]["column_values"].as_array().expect("columns");
+    let named = |name: &str| columns.iter().find(|column| column["name"] == name).expect("it");
+    assert_eq!((&named("q")["range"], &named("q")["missing"]), (&json!([-1.0, 2.5]), &json!(1)));
+    assert_eq!((&named("x")["range"], &named("x")["missing"]), (&json!([0.0, 2.0]), &json!(0)));
+    assert_eq!(named("chain")["texts"], json!(["A", "B"]));
+    assert_eq!(info["particles"]["molecules"], json!(null));
+    assert!(folder.succeed(&["info", "a.csv"]).contains("column       q: -1 to 2.5, 1 missing"));
+
+    let atom = |serial: u32, name: &str, residue: &str, number: u32| {
+        format!(
+            "{:<6}{serial:>5}  {name:<3} {residue:>3} A{number:>4}    {:>8.3}   0.000   0.000  1.00  0.00           C\n",
+            if residue == "LIG" { "HETATM" } else { "ATOM" },
+            f64::from(serial) * 3.0
+        )
+    };
+    let atoms = atom(1, "CA", "ALA", 1) + &atom(2, "CB", "ALA", 1) + &atom(3, "CA", "GLY", 2);
+    folder.write("a.pdb", &(atoms + &atom(4, "C1", "LIG", 3) + "END\n"));
+    let info = folder.json(&["info", "a.pdb", "--json"]);
+    let molecules = &info["particles"]["molecules"];
+    assert_eq!(molecules["chains"], json!([{"name": "A", "count": 4}]));
+    assert_eq!(
+        (&molecules["residues"], &molecules["groups"]),
+        (&json!(3), &json!([{"name": "protein", "count": 2}]))
+    );
+    assert_eq!(molecules["ligands"], json!([{"name": "LIG", "count": 1}]));
+
+    let frame = |time: f64| format!("2\nTime={time}\nC 0 0 0\nC 1 0 0\n");
+    folder.write("a.xyz", &[0.5, 1.0, 1.5].map(frame).concat());
+    let info = folder.json(&["info", "a.xyz", "--json"]);
+    assert_eq!(info["particles"]["times"], json!([0.5, 1.5]));
+}

@@ -1,5 +1,6 @@
-//! `spherule info`: prints the contents of a scene, its memory, and the work that a render skips.
+//! `spherule info`: prints the contents of a scene or a particle file, and its memory.
 
+mod columns;
 mod particles;
 mod rows;
 
@@ -16,6 +17,7 @@ use indicatif::{BinaryBytes, HumanCount};
 use serde::Serialize;
 use spherule_render::World;
 use spherule_render::film::Region;
+use spherule_render::scene::particles::ReadOptions;
 use spherule_render::scene::{NamedMaterial, Projection, Scene};
 use spherule_render::shade::MaterialKind;
 use std::path::PathBuf;
@@ -45,6 +47,9 @@ pub(in crate::cli) struct Args {
     /// Print one JSON object to standard output
     #[arg(long)]
     json: bool,
+    /// Also print the work that a render skips because the scene does not need it
+    #[arg(short, long)]
+    verbose: bool,
 }
 
 /// Contents of a scene, with lengths in its own unit.
@@ -127,7 +132,7 @@ pub(in crate::cli) fn run(args: &Args) -> Result<ExitCode, Failure> {
     if args.json {
         output::print_json(&info);
     } else {
-        info.print();
+        info.print(args.verbose);
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -141,8 +146,10 @@ fn load(source: &Source, rows: Option<usize>) -> Result<(Scene, Option<ParticleI
         }
         return Ok((source.load()?, None));
     };
-    let particles = spherule_render::scene::particles::read(path, options)?;
-    let mut info = ParticleInfo::new(path, options, &particles);
+    let mut options = ReadOptions::clone(options);
+    options.columns.rest = Some(columns::VALUES);
+    let particles = spherule_render::scene::particles::read(path, &options)?;
+    let mut info = ParticleInfo::new(path, &options, &particles);
     info.rows = rows.map(|count| RowInfo::new(&particles, count));
     Ok((Scene::of_particles(particles, &source.title(&Scene::default())), Some(info)))
 }
@@ -172,7 +179,7 @@ impl Info {
         }
     }
 
-    fn print(&self) {
+    fn print(&self, verbose: bool) {
         output::print(format_args!("{}: {}", self.file, self.title));
         self.particles.iter().for_each(ParticleInfo::print);
         output::print(format_args!("spheres      {}", HumanCount(self.bodies.0[0])));
@@ -204,7 +211,7 @@ impl Info {
         output::print(format_args!("camera       {}", self.camera.text()));
         output::print(format_args!("memory       {}", self.memory.text()));
         output::print(format_args!("found        {}", self.found.join(", ")));
-        for skipped in &self.skipped {
+        for skipped in self.skipped.iter().filter(|_| verbose) {
             output::print(format_args!("skipped      {skipped}"));
         }
         self.warnings.iter().for_each(output::warn);
