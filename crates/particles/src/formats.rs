@@ -65,7 +65,9 @@ pub(crate) const ROWS: [Row; 29] = [
     row!(Gro, Words, &["gro"], |source, options| gro::Gro::new(source, options)),
     row!(Pdb, Words, &["pdb", "ent"], |source, options| pdb::Pdb::new(source, options)),
     row!(MmCif, Words, &["mmcif"], |source, options| cif::MmCif::new(
-        Format::MmCif, source, options
+        Format::MmCif,
+        source,
+        options
     )),
     row!(Cif, Words, &["cif"], |source, options| cif::Crystal::new(source, options)),
     row!(Gsd, Signature(|head| head.starts_with(&gsd::MAGIC)), |source, options| {
