@@ -38,6 +38,8 @@ struct Head<'a> {
 const TRAJECTORY: &str = "convert it: gmx trjconv -f {file} -s topol.tpr -o {stem}.gro; or, without the file that names \
      its atoms: python3 -c \"import MDAnalysis; MDAnalysis.Universe('{file}', '{file}', \
      topology_format='MINIMAL').atoms.write('{stem}.xyz', frames='all')\"";
+const WITH_TOPOLOGY: &str = "convert it together with the file that names its atoms: python3 -c \"import MDAnalysis; \
+     MDAnalysis.Universe('TOPOLOGY', '{file}', format='TRJ').atoms.write('{stem}.xyz', frames='all')\"";
 const ATOMS: &str = "convert it: python3 -c \"import MDAnalysis; MDAnalysis.Universe('{file}').atoms.write('{stem}.xyz')\"";
 const MOLECULES: &str = "convert it: obabel {file} -O {stem}.xyz";
 const HDF5: &str = "write one of its arrays: python3 -c \"import h5py, numpy; numpy.save('{stem}.npy', \
@@ -114,6 +116,7 @@ const FORMATS: &[(Sign, &str, &str)] = &[
     (Binary(is_gadget), "a snapshot of Gadget", GADGET),
     (Bytes(40, &[b"GENERAL INFO\0"]), "a TNG trajectory of GROMACS", TRAJECTORY),
     (Binary(is_mmtf), "an MMTF file", MMTF),
+    (Bytes(0, &[b"SQLite format 3\0"]), "a database, as DMS of Desmond is", ATOMS),
     (Words(&["title =", "title=", "variables =", "variables="]), "a Tecplot file", MESH),
     (Words(&["<!doctype html", "<html"]), "a web page (HTML)", PAGE),
     (Words(&["version https://git-lfs"]), "a pointer to a file that Git LFS keeps", LFS),
@@ -129,6 +132,7 @@ const FORMATS: &[(Sign, &str, &str)] = &[
     (Text(|t| t.is_markup(&["<cml", "xml-cml"])), "a CML file", MOLECULES),
     (Words(&["<"]), "an XML file", XML),
     (Text(|text| is_cube(&text.lines)), "a cube file of Gaussian", CUBE),
+    (Text(|text| is_mdcrd(&text.lines)), "a trajectory of Amber in text (mdcrd)", WITH_TOPOLOGY),
     (Text(|text| is_tinker(&text.lines)), "an XYZ file of Tinker", TINKER),
     (Text(|text| is_aims(&text.lines)), "a geometry of FHI-aims", AIMS),
     (Text(|text| is_castep(&text.lines)), "a cell file of CASTEP", CASTEP),
@@ -310,6 +314,15 @@ fn is_cube(lines: &[&[u8]]) -> bool {
         && is_atom(&lines[6])
 }
 
+/// Returns whether lines are a title and rows of ten numbers, which are eight characters wide and have three decimals.
+fn is_mdcrd(lines: &[&[u8]]) -> bool {
+    let is_number = |field: &[u8]| {
+        field.len() == 8 && field[4] == b'.' && number::parse(field.trim_ascii()).is_some()
+    };
+    let is_row = |row: &&[u8]| row.len() == 80 && row.chunks(8).all(is_number);
+    lines.len() > 2 && lines[1..lines.len().min(4)].iter().all(is_row)
+}
+
 /// Returns whether lines are a title, whose lines begin with `*`, the number of atoms, and rows of ten
 /// columns, of which the last may be missing.
 fn is_charmm(lines: &[&[u8]]) -> bool {
@@ -353,6 +366,7 @@ mod tests {
             ),
             ([&[0; 40][..], b"GENERAL INFO\0", &[0; 60]].concat(), ["TNG", "trjconv -f run.bin"]),
             (b"\xDE\0\x26\xADgroupTypeList\0".to_vec(), ["MMTF", "get_structure('run.bin')"]),
+            (b"SQLite format 3\0".to_vec(), ["Desmond", "Universe('run.bin')"]),
             (b"PAR1\0\0".to_vec(), ["Parquet", "read_parquet('run.bin')"]),
             (b"spherule-prepared\n\0".to_vec(), ["prepared", "render run.bin -o run.png"]),
             (b"spherule-checkpoint\n\0".to_vec(), ["a checkpoint", "--resume run.bin"]),
@@ -392,6 +406,7 @@ mod tests {
             ("# made up\nlattice_vector 5 0 0\n", ["aims", "-i aims"]),
             ("atom 0 0 0.1 O\n", ["aims", "-i aims"]),
             ("# x\n\n%BLOCK LATTICE_CART\n5 0 0\n", ["CASTEP", "-i castep-cell"]),
+            (&format!("title\n{0}\n{0}\n", "   1.000-100.000".repeat(5)), ["mdcrd", "TOPOLOGY"]),
             ("<html>", ["web page", "curl"]),
         ] {
             let found = named(content.as_bytes(), "in.txt");

@@ -99,16 +99,18 @@ impl ColumnColors {
         particles.spheres.color = colors;
         if missing > 0 {
             let (path, name) = (path.display(), &self.column);
+            let (particles_have, are) = words(missing);
             let warning = format!(
-                "{path}: {missing} particles have no value of `{name}` and are drawn in gray"
+                "{path}: {missing} {particles_have} no value of `{name}` and {are} drawn in gray"
             );
             particles.frame.warnings.push(warning);
         }
         if undefined > 0 {
             let (path, name) = (path.display(), &self.column);
+            let (particles_have, are) = words(undefined);
             let warning = format!(
-                "{path}: {undefined} particles have a `{name}` of 0 or less, which has no place on a logarithmic \
-                 scale, and are drawn in gray"
+                "{path}: {undefined} {particles_have} a `{name}` of 0 or less, which has no place on a logarithmic \
+                 scale, and {are} drawn in gray"
             );
             particles.frame.warnings.push(warning);
         }
@@ -171,6 +173,11 @@ impl ColumnColors {
             self.column.clone()
         }
     }
+}
+
+/// Returns subject and verbs for so many particles.
+fn words(count: usize) -> (&'static str, &'static str) {
+    if count == 1 { ("particle has", "is") } else { ("particles have", "are") }
 }
 
 fn missing(values: &[f64]) -> usize {

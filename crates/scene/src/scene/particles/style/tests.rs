@@ -82,11 +82,7 @@ fn missing_columns_and_values_are_reported() {
     let (particles, _) = apply(dust, &colored(by("q"))).expect("colors");
     assert_eq!(particles.spheres.color[1], srgb(0x80_80_80));
     assert!(
-        particles
-            .frame
-            .warnings
-            .iter()
-            .any(|text| text.contains("1 particles have no value of `q`"))
+        particles.frame.warnings.iter().any(|text| text.contains("1 particle has no value of `q`"))
     );
     let flat = ColumnColors { spacing: Spacing::Logarithmic, ..by("z") };
     let error = apply(DUMP, &colored(flat)).expect_err("no range");
