@@ -240,6 +240,28 @@ fn dangling_bonds_of_topologies_of_amber_are_left_out() {
 }
 
 #[test]
+fn elements_of_topologies_of_amber_come_from_numbers_or_names_and_masses() {
+    let text = std::fs::read_to_string(data("topologies", "water.parm7")).expect("a file");
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.parm7");
+    let light = "1.59994000E+01  1.00800000E+00";
+    assert!(text.contains(light));
+    let repartitioned = "1.29754000E+01  3.02400000E+00";
+    for (has_numbers, masses, warnings) in
+        [(false, light, 0), (true, repartitioned, 0), (false, repartitioned, 1)]
+    {
+        let flag = if has_numbers { "%FLAG ATOMIC_NUMBER" } else { "%FLAG OLD" };
+        let other = text.replacen("%FLAG ATOMIC_NUMBER", flag, 1).replacen(light, masses, 1);
+        std::fs::write(&path, other).expect("a file");
+        let options = ReadOptions { topology: Some(path.clone()), ..ReadOptions::default() };
+        let frame = read("water.dcd", &options);
+        let symbols: Vec<&str> = types(&frame).into_iter().map(|(_, symbol)| symbol).collect();
+        assert_eq!(symbols, ["O", "H", "H", "O"], "{flag}");
+        assert_eq!(frame.warnings.len(), warnings, "{:?}", frame.warnings);
+    }
+}
+
+#[test]
 fn damaged_topologies_and_restart_files_are_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let fault = |source: PathBuf, from: &str, to: &str| {

@@ -6,7 +6,7 @@ use crate::lines::{Line, Lines};
 use crate::schema::{Naming, Schema, Slot};
 use crate::{
     Bonds, Element, FileError, Format, Kind, ParticleFrame, ReadOptions, builder::Builder,
-    fields::fixed, frame_reader::FrameReader, naming, source::Source,
+    fields::fixed, frame_reader::FrameReader, naming, naming::Weighing, source::Source,
 };
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -180,17 +180,19 @@ fn add(values: &mut Values, line: &Line, width: usize) -> Result<(), FileError> 
     Ok(())
 }
 
-/// Returns the type for the atomic number, name and residue of an atom, separated by blanks.
-fn kind(key: &str) -> Kind {
+/// Returns the type for the atomic number, mass, name and residue of an atom, separated by blanks; the first two may be
+/// blank.
+fn kind(key: &str, weighing: &mut Weighing) -> Kind {
     let mut parts = key.split(' ');
     let mut part = || parts.next().unwrap_or_default();
-    let (number, name, residue) = (part(), part(), part());
+    let (number, mass, name, residue) = (part(), part(), part(), part());
     let named = naming::of_atom(name, residue);
-    match number.parse() {
+    match (number.parse(), mass.parse()) {
         // Extra points; what AMBER does not know has -1.
-        Ok(0) => Kind { element: None, virtual_site: true, ..named },
-        Ok(number) => Kind { element: Element::from_number(number), ..named },
-        Err(_) => named,
+        (Ok(0), _) => Kind { element: None, virtual_site: true, ..named },
+        (Ok(number), _) => Kind { element: Element::from_number(number), ..named },
+        (_, Ok(mass)) => weighing.weigh(named, name, mass),
+        _ => named,
     }
 }
 
@@ -222,7 +224,9 @@ impl FrameReader for Prmtop {
         let has_kind = schema.slots.contains(&Slot::Kind);
         let residues = self.residues();
         let mut residue = 0;
-        let names = columns.iter().find(|(name, _)| *name == "name").map(|own| &own.1);
+        let column = |name: &str| columns.iter().find(|(own, _)| *own == name).map(|own| &own.1);
+        let (names, masses) = (column("name"), column("mass"));
+        let mut weighing = Weighing::default();
         let elements = self.take(ELEMENTS, count)?;
         for atom in 0..count {
             while residues.get(residue + 1).is_some_and(|(first, _)| *first <= atom) {
@@ -248,14 +252,18 @@ impl FrameReader for Prmtop {
             (3..6).for_each(|axis| builder.put_number(slots(first + axis), f64::NAN));
             if !has_kind {
                 let name = names.map_or(&b""[..], |names| names.text(atom));
-                let number = elements.as_ref().and_then(|own| own.numbers().get(atom));
-                let number = number.map_or(String::new(), f64::to_string);
-                let key = [number.as_bytes(), name, label.as_bytes()].join(&b' ');
-                builder.kind_of(&key, kind);
+                let text = |values: Option<&Values>| {
+                    let value = values.and_then(|values| values.numbers().get(atom));
+                    value.map_or(String::new(), f64::to_string)
+                };
+                let (number, mass) = (text(elements.as_ref()), text(masses));
+                let key = [number.as_bytes(), mass.as_bytes(), name, label.as_bytes()].join(&b' ');
+                builder.kind_of(&key, |key| kind(key, &mut weighing));
             }
             builder.end_row()?;
         }
         let mut frame = builder.finish();
+        weighing.warn(&mut frame);
         frame.bonds = self.bonds(frame.len())?;
         let title = ["TITLE", "CTITLE"].into_iter().find_map(|name| self.sections.get(name));
         if let Some(Values::Texts(bytes, _)) = title {
