@@ -3,12 +3,8 @@
 
 use crate::schema::{Schema, Slot};
 use crate::{
-    Cell, FileError, Format, LengthUnit, ParticleFrame, ReadOptions,
-    builder::Builder,
-    frame_reader::FrameReader,
-    lines::{self, Lines},
-    number,
-    source::Source,
+    Cell, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
+    frame_reader::FrameReader, line, lines::Lines, number, source::Source,
 };
 use glam::DVec3;
 use std::sync::Arc;
@@ -162,5 +158,5 @@ pub(crate) fn is_cfg(head: &[u8]) -> bool {
     let lines = head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
     let lines = lines.filter(|line| !line.is_empty() && !line.starts_with(b"#"));
     let is_first = |line: &[u8]| line.starts_with(FIRST) && line.contains(&b'=');
-    { lines }.take(lines::FIRST).any(is_first)
+    { lines }.take(line::FIRST).any(is_first)
 }

@@ -1,14 +1,34 @@
-//! A line of a text file, and its numbers.
+//! A line of a text file, its end, and its numbers.
 
 use crate::{FileError, fields::Fields, number};
+use memchr::memchr;
 use std::borrow::Cow;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
+/// Number of lines at the beginning of a file of which any may tell its format.
+pub(crate) const FIRST: usize = 1000;
+
 /// Returns whether a line is a comment of a numeric table.
 pub(crate) fn is_comment(line: &[u8]) -> bool {
     line.starts_with(b"#") || line.starts_with(b"%")
+}
+
+/// Makes newlines of the carriage returns that end lines by themselves, as on the first Macintosh. Those before a newline belong
+/// to it. Returns the offset of those at the end, which the next byte decides, or else the length.
+pub(crate) fn end_lines(text: &mut [u8]) -> usize {
+    let mut at = 0;
+    while let Some(found) = memchr(b'\r', &text[at..]) {
+        let first = at + found;
+        at = first + text[first..].iter().take_while(|&&byte| byte == b'\r').count();
+        match text.get(at) {
+            None => return first,
+            Some(b'\n') => (),
+            Some(_) => text[first..at].fill(b'\n'),
+        }
+    }
+    text.len()
 }
 
 /// A line without its line ending.

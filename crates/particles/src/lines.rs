@@ -1,6 +1,7 @@
 //! Splits a text file into lines, in large blocks. Lines end with LF, CR LF, or CR alone, mixed as they may be.
 
 pub(crate) use super::line::Line;
+use super::line::end_lines;
 use crate::{FileError, source::Source};
 use memchr::{memchr, memchr_iter};
 use std::io::{self, Read};
@@ -10,9 +11,6 @@ use std::sync::Arc;
 
 /// Maximum length of a line in bytes: a longer one indicates that the file is not text.
 pub(crate) const LONGEST: usize = 1 << 20;
-
-/// Number of lines at the beginning of a file of which any may tell its format.
-pub(crate) const FIRST: usize = 1000;
 
 /// Bytes per read; an incomplete line moves to the front of the buffer before each read.
 const BLOCK: usize = 1 << 18;
@@ -211,22 +209,6 @@ impl Lines {
     pub(crate) fn path(&self) -> &Arc<Path> {
         &self.path
     }
-}
-
-/// Makes newlines of the carriage returns that end lines by themselves, as on the first Macintosh. Those before a newline belong
-/// to it. Returns the offset of those at the end, which the next byte decides, or else the length.
-pub(crate) fn end_lines(text: &mut [u8]) -> usize {
-    let mut at = 0;
-    while let Some(found) = memchr(b'\r', &text[at..]) {
-        let first = at + found;
-        at = first + text[first..].iter().take_while(|&&byte| byte == b'\r').count();
-        match text.get(at) {
-            None => return first,
-            Some(b'\n') => (),
-            Some(_) => text[first..at].fill(b'\n'),
-        }
-    }
-    text.len()
 }
 
 #[cfg(test)]

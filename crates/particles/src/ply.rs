@@ -3,7 +3,8 @@
 //! The crates `ply-rs` and `ply-rs-bw` aren't used: they store a map of values for each vertex. This
 //! reader stores the vertices in columns, and ignores the elements after them.
 
-use crate::lines::{self, Line, Lines};
+use crate::line;
+use crate::lines::{Line, Lines};
 use crate::scalar::{Order, Scalar};
 use crate::schema::{Schema, Slot};
 use crate::{
@@ -71,7 +72,7 @@ impl Header {
     pub(crate) fn read(source: &mut Source) -> Result<Self, FileError> {
         // Data of binary files may hold the bytes of line ends.
         if memmem::find(&source.head, b"format ascii").is_some() {
-            lines::end_lines(&mut source.head);
+            line::end_lines(&mut source.head);
         }
         let (path, head) = (&source.path, &source.head[..]);
         let returns = head.starts_with(b"ply\r") && head.get(4) != Some(&b'\n');

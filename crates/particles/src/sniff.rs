@@ -3,8 +3,8 @@
 use crate::foreign::{self, Foreign};
 use crate::formats::{ROWS, Row, Sign, row};
 use crate::{
-    FileError, Format, ReadOptions, Role, aliases, cif, fields::Fields, gro, header, line, lines,
-    number, pdb, pqr, source::Source, units, utf16,
+    FileError, Format, ReadOptions, Role, aliases, cif, fields::Fields, gro, header, line, number,
+    pdb, pqr, source::Source, units, utf16,
 };
 use std::path::Path;
 
@@ -62,7 +62,7 @@ pub(crate) fn format(source: &mut Source, options: &ReadOptions) -> Result<Forma
             None => fault("is not a text file: it holds zero bytes".to_owned()).with_help(KNOWN),
         });
     }
-    lines::end_lines(&mut source.head);
+    line::end_lines(&mut source.head);
     if let Some(format) = options.format {
         return Ok(format);
     }
@@ -146,7 +146,7 @@ fn detect(head: &[u8], options: &ReadOptions) -> Result<Format, String> {
     if Fields::marks(first).take(2).all(|field| number::parse(field).is_some()) {
         return Ok(Format::Xyzr);
     }
-    if let Some(format) = lines.take(lines::FIRST).find_map(detect_record) {
+    if let Some(format) = lines.take(line::FIRST).find_map(detect_record) {
         return Ok(crystal(format));
     }
     let x = options.columns.roles.iter().find(|(role, _)| *role == Role::X);
@@ -272,7 +272,7 @@ mod tests {
         for lines in [1, 2, 900] {
             assert_eq!(detect(&(user.repeat(lines) + atom)), Ok(Format::Pdb), "{lines}");
         }
-        assert!(detect(&(user.repeat(lines::FIRST + 1) + atom)).is_err());
+        assert!(detect(&(user.repeat(line::FIRST + 1) + atom)).is_err());
         for (text, expected) in [
             ("written by hand\nITEM: TIMESTEP\n0\n", Format::LammpsDump),
             ("a b\ndata_x\nloop_\n_atom_site.Cartn_x\n", Format::MmCif),

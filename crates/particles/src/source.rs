@@ -5,7 +5,7 @@
 //! written in Rust, so the program needs no system library.
 
 use crate::utf16::{self, Utf16};
-use crate::{FileError, ReadProgress, line, lines, progress::CountedFile};
+use crate::{FileError, ReadProgress, line, progress::CountedFile};
 use flate2::read::MultiGzDecoder;
 use lzma_rust2::XzReader;
 use ruzstd::decoding::errors::{FrameDecoderError, ReadFrameHeaderError};
@@ -117,7 +117,7 @@ impl Source {
         }
         let settled = self.head.iter().rposition(|&byte| byte != b'\r').map_or(0, |at| at + 1);
         self.reader.by_ref().take(HEAD as u64).read_to_end(&mut self.head)?;
-        lines::end_lines(&mut self.head[settled..]);
+        line::end_lines(&mut self.head[settled..]);
         Ok(self.head.len() > HEAD)
     }
 

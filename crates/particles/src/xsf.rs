@@ -5,7 +5,8 @@ use crate::{
     builder::Builder,
     fields::Fields,
     frame_reader::FrameReader,
-    lines::{self, Line, Lines},
+    line,
+    lines::{Line, Lines},
     number,
     schema::Schema,
     source::Source,
@@ -142,7 +143,7 @@ fn fields(line: &[u8]) -> Fields<'_> {
 /// first lines, and has atoms.
 pub(crate) fn is_xsf(head: &[u8]) -> bool {
     let lines = head.split(|&byte| byte == b'\n').map(fields);
-    let mut lines = lines.filter(|fields| fields.clone().next().is_some()).take(lines::FIRST);
+    let mut lines = lines.filter(|fields| fields.clone().next().is_some()).take(line::FIRST);
     let is_keyword = |fields: &Fields<'_>, is: &dyn Fn(&[u8]) -> bool| {
         let mut fields = fields.clone();
         fields.next().is_some_and(is)
