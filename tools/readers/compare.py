@@ -83,7 +83,7 @@ def arguments():
 
 def spherule(options, file):
     own = spherule_frame(options, file, "first")
-    if own["format"] in ("dcd", "xtc", "trr", "netcdf", "hdf5"):
+    if own["format"] in ("dcd", "xtc", "trr", "netcdf", "hdf5", "ase") or file.suffix == ".yaml":
         last = spherule_frame(options, file, "last")
         own |= {"last_frame": last["rows"], "last_cell": last["cell"]}
     return own

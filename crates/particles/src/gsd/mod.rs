@@ -21,6 +21,9 @@ use std::sync::Arc;
 /// Chunks of particles that are not columns of numbers, or are in [`COLUMNS`] under other names.
 const KNOWN: [&str; 7] = ["N", "types", "typeid", "position", "velocity", "diameter", "mass"];
 
+/// Chunk of the diameters, which HOOMD-blue leaves out if all are 1.
+const DIAMETER: &str = "particles/diameter";
+
 /// Names of columns that always exist.
 const COLUMNS: [&str; 10] = ["x", "y", "z", "diameter", "type", "mass", "charge", "vx", "vy", "vz"];
 
@@ -211,11 +214,13 @@ impl Gsd {
         Ok(())
     }
 
-    /// Returns whether the options say which column has radii.
-    fn chooses_radii(&self) -> bool {
+    /// Returns whether particles have sizes of their own: the file has diameters, or the options say which column has
+    /// radii.
+    fn has_sizes(&self) -> bool {
         let is_size = |(role, _): &(Role, String)| matches!(role, Role::Radius | Role::Diameter);
         matches!(self.options.radii, Radii::Column(_))
             || self.options.columns.roles.iter().any(is_size)
+            || [self.next, 0].iter().any(|&frame| self.file.size(frame, DIAMETER).is_some())
     }
 
     fn radius(&mut self, count: u64) -> Result<Vec<f64>, FileError> {
@@ -269,7 +274,7 @@ impl Gsd {
         let shape = |row| shapes.get(codes.code(row) as usize).copied().unwrap_or_default();
         let rows = 0..codes.len();
         let others = rows.clone().filter(|&row| shape(row) == TypeShape::Other).count();
-        if !self.chooses_radii() {
+        if !self.has_sizes() {
             for (row, radius) in frame.radius.iter_mut().enumerate() {
                 if let TypeShape::Sphere(own) = shape(row) {
                     *radius = own;
