@@ -32,11 +32,18 @@ def floats(name: str, value: Any) -> npt.NDArray[Any]:
     if array.dtype.kind not in "fiub":
         raise Error(f"`{name}` is an array of {array.dtype}, but must be one of real numbers")
     if array.dtype.kind == "f" and array.dtype.itemsize in (4, 8) and array.dtype.isnative:
-        if array.flags.aligned and all(stride % array.itemsize == 0 for stride in array.strides):
-            return array
-        return np.array(array)
+        return aligned(array)
     converted: npt.NDArray[np.float64] = array.astype(np.float64)
     return converted
+
+
+def aligned(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """The array, or a copy if its numbers do not begin where the processor wants them."""
+    import numpy as np
+
+    # NumPy takes any place of an array without numbers for aligned.
+    places = (array.ctypes.data, *array.strides)
+    return array if all(place % array.itemsize == 0 for place in places) else np.array(array)
 
 
 def refuse_masked(name: str, value: Any) -> None:

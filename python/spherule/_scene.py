@@ -233,11 +233,17 @@ class Scene:
 
 
 def _restored(*columns: Any) -> Scene:
-    """A scene from what its pickle holds."""
+    """A scene from what its pickle holds. Buffers of pickles may lie anywhere, also between numbers."""
+    import numpy as np
+
     from . import _native
 
+    def aligned(value: Any) -> Any:
+        return _arrays.aligned(value) if isinstance(value, np.ndarray) else value
+
+    text, places, *others = columns
     scene = Scene.__new__(Scene)
-    scene._native = _native.Scene.of_columns(*columns)
+    scene._native = _native.Scene.of_columns(text, [aligned(column) for column in places], *map(aligned, others))
     return scene
 
 

@@ -297,6 +297,20 @@ def test_cancelled_tasks_end_their_renders(cloud):
     assert time.monotonic() - start < 3
 
 
+def test_pickles_may_have_buffers_between_numbers(cloud):
+    scene = spherule.Scene(cloud, radius=0.05)
+    buffers = []
+    data = pickle.dumps(scene, protocol=5, buffer_callback=buffers.append)
+    assert buffers
+    moved = [memoryview(b"." + buffer.raw().tobytes())[1:] for buffer in buffers]
+    copy = pickle.loads(data, buffers=moved)
+    size = {"size": (40, 30), "spp": 2}
+    assert np.array_equal(copy.render(**size).pixels, scene.render(**size).pixels)
+    empty = np.frombuffer(b".", np.float64, count=0, offset=1).reshape(0, 3)
+    with pytest.raises(spherule.Error, match="no particles|no spheres|empty"):
+        spherule.Scene(empty, radius=empty[:, 0])
+
+
 def test_scenes_are_pickled(cloud):
     scene = spherule.Scene(cloud, radius=0.05, kinds=["C", "O"] * 500, preset="glossy", show_cell=True, cell=[1, 1, 1])
     copy = pickle.loads(pickle.dumps(scene))
