@@ -320,7 +320,7 @@ fn is_mdcrd(lines: &[&[u8]]) -> bool {
         field.len() == 8 && field[4] == b'.' && number::parse(field.trim_ascii()).is_some()
     };
     let is_row = |row: &&[u8]| row.len() == 80 && row.chunks(8).all(is_number);
-    lines.len() > 2 && lines[1..lines.len().min(4)].iter().all(is_row)
+    lines.len() > 2 && lines[1..3].iter().all(is_row)
 }
 
 /// Returns whether lines are a title, whose lines begin with `*`, the number of atoms, and rows of ten

@@ -28,8 +28,6 @@ pub(super) struct ParticleInfo {
     /// Ranges of the columns that are numbers or texts.
     column_values: Vec<ColumnInfo>,
     types: Vec<TypeInfo>,
-    /// The source of the elements of types; null if it is unknown.
-    elements_from: Option<String>,
     /// Null if the file has no names of residues.
     molecules: Option<MoleculeInfo>,
     /// Null if the file has none.
@@ -108,7 +106,6 @@ impl ParticleInfo {
                     spheres,
                 })
                 .collect(),
-            elements_from: None,
             molecules: MoleculeCensus::of(particles).map(MoleculeInfo::from),
             cell: particles.frame.cell.map(|cell| CellInfo {
                 origin: cell.origin.to_array(),
@@ -146,9 +143,6 @@ impl ParticleInfo {
         if self.types.len() > SHOWN {
             let more = self.types.len() - SHOWN;
             output::print(format_args!("type         and {more} more; --json lists all"));
-        }
-        if let Some(source) = &self.elements_from {
-            output::print(format_args!("elements     {source}"));
         }
         self.molecules.iter().for_each(MoleculeInfo::print);
         if let Some(CellInfo { origin, vectors: [a, b, c], periodic }) = &self.cell {
