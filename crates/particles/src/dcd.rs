@@ -235,7 +235,7 @@ impl Dcd {
 }
 
 /// Version of CHARMM that other programs write, whatever the cell: NAMD, LAMMPS, OpenMM and VMD.
-const OTHERS: i64 = 24;
+const WRITERS_VERSION: i64 = 24;
 
 /// Returns the cell of a record: lengths and angles in degrees, as A, gamma, B, beta, alpha, C; or the
 /// cosines of the angles, as NAMD and LAMMPS write them; or the lower triangle of a symmetric matrix of
@@ -252,7 +252,7 @@ fn cell(numbers: [f64; 6], version: i64) -> Option<Cell> {
     let vectors = [DVec3::new(xx, xy, xz), DVec3::new(xy, yy, yz), DVec3::new(xz, yz, zz)];
     let is_positive =
         xx > 0.0 && xx * yy > xy * xy && vectors[0].cross(vectors[1]).dot(vectors[2]) > 0.0;
-    let is_matrix = version >= 22 && version != OTHERS && is_positive;
+    let is_matrix = version >= 22 && version != WRITERS_VERSION && is_positive;
     let cosines = angles.iter().all(|cosine| cosine.abs() <= 1.0) && !is_matrix;
     // Right angles are exact.
     let degrees = |cosine: f64| if cosine == 0.0 { 90.0 } else { libm::acos(cosine).to_degrees() };
@@ -293,28 +293,28 @@ mod tests {
     use super::*;
 
     fn lengths(numbers: [f64; 6]) -> Option<[f64; 3]> {
-        cell(numbers, OTHERS).map(|cell| cell.vectors.map(DVec3::length))
+        cell(numbers, WRITERS_VERSION).map(|cell| cell.vectors.map(DVec3::length))
     }
 
     #[test]
     fn cells_are_angles_cosines_or_matrices() {
-        let degrees = cell([20.0, 90.0, 30.0, 90.0, 60.0, 40.0], OTHERS).expect("a cell");
-        let cosines = cell([20.0, 0.0, 30.0, 0.0, 0.5, 40.0], OTHERS).expect("a cell");
+        let degrees = cell([20.0, 90.0, 30.0, 90.0, 60.0, 40.0], WRITERS_VERSION).expect("a cell");
+        let cosines = cell([20.0, 0.0, 30.0, 0.0, 0.5, 40.0], WRITERS_VERSION).expect("a cell");
         for (one, other) in degrees.vectors.into_iter().zip(cosines.vectors) {
             assert!((one - other).length() < 1e-12, "{degrees:?} {cosines:?}");
         }
         assert_eq!(degrees.vectors[1], DVec3::new(0.0, 30.0, 0.0));
         for tilt in [-2.0, 2.0] {
-            let matrix = cell([20.0, tilt, 30.0, 0.0, 1.5, 40.0], OTHERS).expect("a cell");
+            let matrix = cell([20.0, tilt, 30.0, 0.0, 1.5, 40.0], WRITERS_VERSION).expect("a cell");
             assert_eq!(matrix.vectors[1], DVec3::new(tilt, 30.0, 1.5));
         }
         // Of CHARMM, small numbers are components of edges, too, if they can be.
         let small = [20.0, -0.3, 21.0, 0.2, -0.1, 22.0];
         assert_eq!(cell(small, 46).expect("a cell").vectors[2], DVec3::new(0.2, -0.1, 22.0));
-        let [one, other] = [cell(small, OTHERS), cell(small, 21)];
+        let [one, other] = [cell(small, WRITERS_VERSION), cell(small, 21)];
         assert!(one == other && one.expect("a cell").vectors[0] == DVec3::X * 20.0);
         let no_matrix = [0.5, -0.6, 0.5, 0.0, 0.0, 1.0];
-        assert_eq!(cell(no_matrix, 46), cell(no_matrix, OTHERS));
+        assert_eq!(cell(no_matrix, 46), cell(no_matrix, WRITERS_VERSION));
         assert_eq!(lengths([0.0; 6]), None);
         assert_eq!(lengths([f64::NAN; 6]), None);
         assert_eq!(lengths([20.0, 0.0, 30.0, 0.0, 0.0, 40.0]), Some([20.0, 30.0, 40.0]));

@@ -23,7 +23,7 @@ const SECTIONS: [(&str, &str); 4] = [
 const ELEMENTS: &str = "ATOMIC_NUMBER";
 
 /// Names of the other columns, of which the last three are not in the file.
-const OTHERS: [&str; 6] = ["number", "residue_number", "residue", "x", "y", "z"];
+const NUMBERED: [&str; 6] = ["number", "residue_number", "residue", "x", "y", "z"];
 
 /// Columns of texts, even if the texts look like numbers.
 const TEXTS: [&str; 5] = ["number", "residue_number", "residue", "name", "atom_type"];
@@ -214,7 +214,7 @@ impl FrameReader for Prmtop {
         if columns.is_empty() {
             return Err(self.lines.ended("the file has no section ATOM_NAME"));
         }
-        let names = columns.iter().map(|(name, _)| *name).chain(OTHERS).map(str::to_owned);
+        let names = columns.iter().map(|(name, _)| *name).chain(NUMBERED).map(str::to_owned);
         let schema = Schema::new(names.collect(), &self.options);
         let schema = schema.map_err(|message| self.lines.ended(message))?;
         let schema = Arc::new(Schema { naming: Naming::Names, ..schema });

@@ -14,7 +14,7 @@ const COORDINATES: [[&str; 3]; 3] = [
 ];
 
 /// Other columns with the names that the table of atoms has for them.
-const OTHERS: [(&str, &str); 2] = [("comp_id", "label_comp_id"), ("atom_id", "label_atom_id")];
+const EITHER_NAME: [(&str, &str); 2] = [("comp_id", "label_comp_id"), ("atom_id", "label_atom_id")];
 
 /// The atoms of a component, as listed.
 #[derive(Default)]
@@ -76,7 +76,7 @@ impl Component {
         let (count, axes) = best?;
         let nowhere = self.rows.len() - count;
         self.rows.retain(|row| has(row, axes));
-        for (from, to) in OTHERS {
+        for (from, to) in EITHER_NAME {
             self.names.iter_mut().filter(|name| *name == from).for_each(|name| to.clone_into(name));
         }
         for (axis, name) in axes.into_iter().zip(["Cartn_x", "Cartn_y", "Cartn_z"]) {
