@@ -257,7 +257,9 @@ fn elements_of_topologies_of_amber_come_from_numbers_or_names_and_masses() {
         let frame = read("water.dcd", &options);
         let symbols: Vec<&str> = types(&frame).into_iter().map(|(_, symbol)| symbol).collect();
         assert_eq!(symbols, ["O", "H", "H", "O"], "{flag}");
-        assert_eq!(frame.warnings.len(), warnings, "{:?}", frame.warnings);
+        // Another is of the frames that are not read.
+        let named = frame.warnings.iter().filter(|text| text.contains("3.024")).count();
+        assert_eq!(named, warnings, "{:?}", frame.warnings);
     }
 }
 
