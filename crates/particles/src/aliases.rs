@@ -37,13 +37,19 @@ pub const GROUPS: [&[&str]; 28] = [
 ];
 
 /// Names of the coordinate of an axis: those that are suggested, then those made of a word, and of the axis or its index in
-/// arrays of vectors.
+/// arrays of vectors. `@with_words` passes the words on.
 macro_rules! coordinate {
     ($axis:literal, $index:literal, $($suggested:literal)*) => {
-        coordinate!($axis, $index, [$($suggested)*], "pos" "position" "positions" "coord" "coords" "coordinate" "coordinates"
+        coordinate!(@with_words names $axis, $index, [$($suggested)*])
+    };
+    (@with_words $next:ident $($arguments:tt)*) => {
+        coordinate!(@$next $($arguments)*, "pos" "position" "positions" "coord" "coords" "coordinate" "coordinates"
             "cartn" "point" "points" "center" "centre" "centroid" "location")
     };
-    ($axis:literal, $index:literal, [$($suggested:literal)*], $($word:literal)*) => {
+    (@words, $($word:literal)*) => {
+        &[$($word,)*]
+    };
+    (@names $axis:literal, $index:literal, [$($suggested:literal)*], $($word:literal)*) => {
         &[
             $($suggested,)*
             $(
@@ -54,6 +60,16 @@ macro_rules! coordinate {
             )*
         ]
     };
+}
+
+/// Words that names of coordinates begin with.
+const WORDS: &[&str] = coordinate!(@with_words words);
+
+/// Returns names of x, y and z that are numbered from 1, which mean positions where no other name does: with numbers from 0,
+/// two of them are others.
+pub(crate) fn numbered_from_one() -> impl Iterator<Item = [String; 3]> {
+    let names = |word: &str, mark: &str| [1, 2, 3].map(|axis| format!("{word}{mark}{axis}"));
+    WORDS.iter().flat_map(move |word| ["_", "", ".", ":", " "].map(|mark| names(word, mark)))
 }
 
 /// Number of names of a role that are suggested.

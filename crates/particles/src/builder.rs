@@ -33,6 +33,10 @@ pub(crate) struct Builder {
     /// Number of rows beyond which only columns that were requested by name are kept.
     most_rows: usize,
     needed_columns: usize,
+    /// Number of color channels that are not 0 to 1.
+    beyond: u64,
+    /// Extra columns that are left out since they mix numbers and texts.
+    mixed: Vec<String>,
 }
 
 impl Builder {
@@ -56,6 +60,8 @@ impl Builder {
             next_check: FIRST_CHECK.min(most_rows),
             most_rows,
             needed_columns: schema.needed_columns(),
+            beyond: 0,
+            mixed: Vec::new(),
         }
     }
 
@@ -118,6 +124,7 @@ impl Builder {
                 if extra < self.schema.asked {
                     put?;
                 } else if put.is_err() {
+                    self.mixed.push(self.schema.extras[extra].clone());
                     self.extras[extra] = Extra::LeftOut;
                 }
             }
@@ -132,7 +139,10 @@ impl Builder {
             Slot::Position(axis) => self.position[axis] = value,
             Slot::Radius(factor) => self.frame.radius.push(value * factor),
             Slot::Kind => self.kind(value.to_string().as_bytes()),
-            Slot::Color(channel) => self.color[channel] = clamp_channel(value),
+            Slot::Color(channel) => {
+                self.beyond += u64::from(!is_color(value));
+                self.color[channel] = clamp_channel(value);
+            }
             Slot::Extra(extra) => self.extras[extra].put_number(value),
         }
     }
@@ -201,7 +211,7 @@ impl Builder {
 
     fn channel(&mut self, channel: usize, line: &Line, field: &[u8]) -> Result<(), FileError> {
         let value = line.number(field)? as f32;
-        if !(0.0..=1.0).contains(&value) {
+        if !is_color(f64::from(value)) {
             let message = format!("a color of {value}, but colors are 0 to 1");
             let help = "colors are linear; make values of 0 to 255 linear after a division by 255";
             return Err(line.error_at(field, message).with_help(help));
@@ -259,6 +269,24 @@ impl Builder {
         bytes as u64
     }
 
+    /// Warns that rows have more columns than names, if they do.
+    pub(crate) fn warn_of_surplus(&mut self, columns: usize) {
+        let named = self.schema.names.len();
+        if columns > named {
+            self.frame.warnings.push(format!(
+                "rows have {columns} columns, of which {named} are named; the others are not read"
+            ));
+        }
+    }
+
+    /// Warns that rows follow those that the file counts.
+    pub(crate) fn warn_of_more_rows(&mut self) {
+        let count = self.frame.len();
+        self.frame.warnings.push(format!(
+            "rows follow the {count} atoms that its header counts, and are left out; correct the number"
+        ));
+    }
+
     /// Warns of the file's columns that have no use, if there are any.
     pub(crate) fn warn_of_unused(&mut self) {
         let names: Vec<&str> = self.schema.unused.iter().map(String::as_str).collect();
@@ -270,11 +298,32 @@ impl Builder {
     /// Returns the frame.
     pub(crate) fn finish(mut self) -> ParticleFrame {
         drop_uncertain_elements(&mut self.frame.kinds, self.schema.naming);
+        warn_of_colors(&mut self.frame, self.beyond);
+        if !self.mixed.is_empty() {
+            let names: Vec<&str> = self.mixed.iter().map(String::as_str).collect();
+            let warning = listed("columns that mix numbers and texts are not read", &names);
+            self.frame.warnings.push(warning);
+        }
         for extra in self.extras {
             extra.finish(&mut self.frame.numbers, &mut self.frame.texts);
         }
         self.frame.shrink();
         self.frame
+    }
+}
+
+/// Returns whether a number is a channel of a color.
+pub(crate) fn is_color(value: f64) -> bool {
+    (0.0..=1.0).contains(&value)
+}
+
+/// Adds a warning that counts the channels of colors that are clamped.
+pub(crate) fn warn_of_colors(frame: &mut ParticleFrame, beyond: u64) {
+    if beyond > 0 {
+        frame.warnings.push(format!(
+            "{beyond} values of colors are not 0 to 1, and are cut off there; colors are linear: make values of 0 to 255 \
+             linear after a division by 255"
+        ));
     }
 }
 

@@ -24,9 +24,13 @@ impl Cell {
     /// convention: the first edge along x, the second in the x-y plane. `None` if there is no such cell.
     pub(crate) fn of_lengths(lengths: [f64; 3], angles: [f64; 3]) -> Option<Self> {
         let [a, b, c] = lengths;
-        // Right angles are exact.
-        let cosine = |angle: f64| if angle == 90.0 { 0.0 } else { libm::cos(angle.to_radians()) };
-        let [alpha, beta, gamma] = angles.map(cosine);
+        // Right angles are exact, and those of an edge without length mean nothing.
+        let cosine = |angle: usize| {
+            let [next, last] = [lengths[(angle + 1) % 3], lengths[(angle + 2) % 3]];
+            let is_right = angles[angle] == 90.0 || next == 0.0 || last == 0.0;
+            if is_right { 0.0 } else { libm::cos(angles[angle].to_radians()) }
+        };
+        let [alpha, beta, gamma] = [cosine(0), cosine(1), cosine(2)];
         let sine = (1.0 - gamma * gamma).sqrt();
         let tilt = (alpha - beta * gamma) / sine;
         let height = (1.0 - beta * beta - tilt * tilt).sqrt();
@@ -39,8 +43,13 @@ impl Cell {
         cell.checked()
     }
 
-    /// Returns the cell if it is finite and has a volume.
+    /// Returns the cell, [thickened](Self::thickened), if it is finite and then has a volume.
     pub(crate) fn checked(self) -> Option<Self> {
+        self.thickened().with_volume()
+    }
+
+    /// Returns the cell if it is finite and has a volume, as cells of crystals have.
+    pub(crate) fn with_volume(self) -> Option<Self> {
         let [a, b, c] = self.vectors;
         let finite = [a, b, c, self.origin].iter().all(|vector| vector.is_finite());
         (finite && a.cross(b).dot(c) != 0.0).then_some(self)
@@ -48,7 +57,7 @@ impl Cell {
 
     /// Makes edges of length 0, as of simulations in two dimensions, normals of length 1 with the others at their middle, along which
     /// the cell is not periodic. Cells without any edge stay.
-    pub(crate) fn thickened(mut self) -> Self {
+    fn thickened(mut self) -> Self {
         if self.vectors == [DVec3::ZERO; 3] {
             return self;
         }
@@ -109,7 +118,7 @@ mod tests {
     fn flat_cells_are_as_thick_as_1_and_not_periodic_there() {
         let cell = |vectors: [[f64; 3]; 3]| {
             let vectors = vectors.map(DVec3::from_array);
-            Cell { origin: DVec3::ZERO, vectors, periodic: [true; 3] }.thickened().checked()
+            Cell { origin: DVec3::ZERO, vectors, periodic: [true; 3] }.checked()
         };
         let flat = cell([[6.0, 0.0, 0.0], [1.5, 5.0, 0.0], [0.0; 3]]).expect("a cell");
         assert_eq!(flat.vectors, [DVec3::X * 6.0, DVec3::new(1.5, 5.0, 0.0), DVec3::Z]);
@@ -134,12 +143,17 @@ mod tests {
         assert_eq!(box_shaped.vectors, [DVec3::X * 2.0, DVec3::Y * 3.0, DVec3::Z * 4.0]);
         assert_eq!(box_shaped.cartesian([0.5, 1.0, 0.25]), DVec3::new(1.0, 3.0, 1.0));
         for (lengths, angles) in [
-            ([0.0, 1.0, 1.0], [90.0; 3]),
+            ([0.0; 3], [90.0; 3]),
             ([1.0; 3], [0.0; 3]),
             ([1.0; 3], [150.0, 150.0, 150.0]),
             ([f64::NAN, 1.0, 1.0], [90.0; 3]),
         ] {
             assert_eq!(Cell::of_lengths(lengths, angles), None, "{lengths:?} {angles:?}");
+        }
+        for angles in [[90.0; 3], [0.0, 0.0, 90.0]] {
+            let layer = Cell::of_lengths([2.0, 3.0, 0.0], angles).expect("a cell");
+            assert_eq!(layer.vectors, [DVec3::X * 2.0, DVec3::Y * 3.0, DVec3::Z]);
+            assert_eq!((layer.periodic, layer.origin.z), ([true, true, false], -0.5));
         }
     }
 }

@@ -1,5 +1,5 @@
 //! Reads CFG of AtomEye, standard and extended: fractional coordinates, in angstrom
-//! (Li, "AtomEye", 2003). `Transform` and `eta` are ignored.
+//! (Li, "AtomEye", 2003). `Transform` and `eta` are not applied.
 
 use crate::schema::{Schema, Slot};
 use crate::{
@@ -38,6 +38,8 @@ struct Header {
     entries: Option<usize>,
     /// Names of auxiliary columns.
     names: Vec<String>,
+    /// True if `Transform` or `eta` change positions.
+    is_transformed: bool,
 }
 
 impl Cfg {
@@ -55,6 +57,7 @@ impl Cfg {
             has_velocities: true,
             entries: None,
             names: Vec::new(),
+            is_transformed: false,
         };
         let mut begun = false;
         while let Some(line) = self.lines.next()? {
@@ -79,8 +82,13 @@ impl Cfg {
                 b"A" => header.scale = line.number(first)?,
                 b"entry_count" => header.entries = Some(line.whole_number(first)? as usize),
                 _ => {
-                    if let Some([row, axis]) = component(key) {
+                    if let Some([row, axis]) = component(key, b"H0(") {
                         header.vectors[row][axis] = line.number(first)?;
+                    } else if let Some([row, axis]) = component(key, b"Transform(") {
+                        let usual = f64::from(u8::from(row == axis));
+                        header.is_transformed |= line.number(first)? != usual;
+                    } else if component(key, b"eta(").is_some() {
+                        header.is_transformed |= line.number(first)? != 0.0;
                     } else if key.starts_with(b"auxiliary[") && header.names.len() < COLUMNS {
                         header.names.push(String::from_utf8_lossy(first).into_owned());
                     }
@@ -91,9 +99,9 @@ impl Cfg {
     }
 }
 
-/// Returns the row and column of a component of the cell, as in `H0(1,2)`.
-fn component(key: &[u8]) -> Option<[usize; 2]> {
-    let digits = key.strip_prefix(b"H0(")?.strip_suffix(b")")?;
+/// Returns the row and column of a component of a matrix, as in `H0(1,2)`.
+fn component(key: &[u8], matrix: &[u8]) -> Option<[usize; 2]> {
+    let digits = key.strip_prefix(matrix)?.strip_suffix(b")")?;
     let [row, b',', axis] = *digits else { return None };
     let index = |digit: u8| (b'1'..=b'3').contains(&digit).then(|| usize::from(digit - b'1'));
     Some([index(row)?, index(axis)?])
@@ -106,7 +114,7 @@ impl FrameReader for Cfg {
         }
         let header = self.header()?;
         let vectors = header.vectors.map(|vector| vector * header.scale);
-        let cell = Cell { origin: DVec3::ZERO, vectors, periodic: [true; 3] }.checked();
+        let cell = Cell { origin: DVec3::ZERO, vectors, periodic: [true; 3] }.with_volume();
         let cell = cell.ok_or_else(|| self.lines.ended("the cell H0 has no volume"))?;
         let velocities = if header.has_velocities { &VELOCITIES[..] } else { &[] };
         let names = NAMES.iter().chain(velocities).map(|name| (*name).to_owned());
@@ -147,6 +155,13 @@ impl FrameReader for Cfg {
                 };
                 builder.put(slot, &line, field)?;
             }
+        }
+        if self.lines.more()? {
+            builder.warn_of_more_rows();
+        }
+        if header.is_transformed {
+            let warning = "`Transform` and `eta` of its header are not applied";
+            builder.frame.warnings.push(warning.to_owned());
         }
         let frame = builder.finish();
         Ok(Some(ParticleFrame { cell: Some(cell), unit: LengthUnit::Angstrom, ..frame }))

@@ -15,15 +15,18 @@ pub(crate) struct Csv {
     lines: Lines,
     options: ReadOptions,
     record: Record,
+    /// True if the first column of the rows may number or name them, and the header doesn't name it.
+    has_index: bool,
     /// Buffer for a row of several lines.
     row: Vec<u8>,
 }
 
 impl Csv {
     pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
+        let has_index = has_index(&source.head);
         let lines = Lines::new(source);
         let (record, row) = (Record::default(), Vec::new());
-        Self { lines, options: options.clone(), record, row }
+        Self { lines, options: options.clone(), record, has_index, row }
     }
 
     /// Returns the next line that is neither blank nor a comment.
@@ -63,6 +66,24 @@ impl Csv {
     }
 }
 
+/// Returns whether the complete rows in the head of a file have a first column that the header does not name.
+fn has_index(head: &[u8]) -> bool {
+    let complete = &head[..memchr::memrchr(b'\n', head).unwrap_or(head.len())];
+    let lines = complete.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
+    let is_content =
+        |line: &&[u8]| !line.is_empty() && !line::is_comment(line) && !line.starts_with(b"sep=");
+    let mut lines = lines.filter(is_content);
+    let Some(header) = lines.next() else { return false };
+    let (names, separator) = (header_names(header), separator(header));
+    let mut record = Record::default();
+    let rows = lines.take(header::ROWS).map(|line| {
+        record.read(line, separator);
+        record.fields().map(<[u8]>::to_vec).collect()
+    });
+    let rows: Vec<Vec<Vec<u8>>> = rows.collect();
+    rows.iter().all(|row| row.len() == names.len() + 1) && header::has_index(&rows)
+}
+
 /// Returns whether a line has an odd number of quotes, so that it opens or closes a quoted field.
 fn is_open(row: &[u8]) -> bool {
     memchr::memchr_iter(b'"', row).count() % 2 == 1
@@ -75,7 +96,7 @@ impl FrameReader for Csv {
             self.lines.back();
         }
         let Some(line) = Self::line(&mut self.lines)? else { return Ok(None) };
-        let names = header_names(line.bytes);
+        let mut names = header_names(line.bytes);
         let separator = separator(line.bytes);
         for (column, name) in names.iter().enumerate() {
             let same = |other: &String| other.eq_ignore_ascii_case(name);
@@ -83,6 +104,9 @@ impl FrameReader for Csv {
                 let span = span(line.bytes, separator, column);
                 return Err(line.error(span, format!("two columns are named `{name}`")));
             }
+        }
+        if self.has_index {
+            names.insert(0, String::new());
         }
         let help = header::columns_help(&names, &self.options);
         let schema =
@@ -102,6 +126,9 @@ impl FrameReader for Csv {
             let line = Line::new(&path, number, &self.row);
             let row = Row { line, separator, schema: &schema };
             has_commas |= row.read(&mut self.record, &mut builder)?;
+        }
+        if self.has_index {
+            builder.frame.warnings.push(header::UNNAMED.to_owned());
         }
         if has_commas {
             builder.frame.warnings.push("commas are read as decimal points".to_owned());

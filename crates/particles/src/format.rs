@@ -109,6 +109,14 @@ impl Format {
         )
     }
 
+    /// Returns whether positions of this format are in places of their own, which `--columns` cannot change.
+    pub(crate) fn fixes_positions(self) -> bool {
+        matches!(
+            self,
+            Self::Gro | Self::Pdb | Self::Poscar | Self::Cfg | Self::Dcd | Self::Xtc | Self::Gsd
+        )
+    }
+
     /// Returns whether files of this format hold single molecules, which have no direction of their own.
     pub fn has_molecules(self) -> bool {
         matches!(

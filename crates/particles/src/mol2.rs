@@ -94,7 +94,7 @@ fn section(line: &[u8]) -> Option<&[u8]> {
 
 /// Parses the cell: lengths and angles.
 fn cell(line: &Line) -> Result<Option<Cell>, FileError> {
-    let mut numbers = [0.0; 6];
+    let mut numbers = [f64::NAN; 6];
     for (number, field) in numbers.iter_mut().zip(line.fields()) {
         *number = line.number(field)?;
     }
@@ -109,6 +109,9 @@ impl FrameReader for Mol2 {
             return Ok(None);
         }
         let title = self.lines.next()?.map(|line| line.text().trim().to_owned());
+        let counts = self.lines.next()?;
+        let counted = counts.and_then(|line| line.fields().next().and_then(number::whole));
+        self.lines.back();
         let mut builder = Builder::new(self.lines.path(), Format::Mol2, &schema);
         builder.declare(&TEXTS, &["charge"]);
         let has_kind = schema.slots.contains(&Slot::Kind);
@@ -143,6 +146,12 @@ impl FrameReader for Mol2 {
             } else if inside == b"CRYSIN" && !line.is_blank() && edges.is_none() {
                 edges = cell(&line)?;
             }
+        }
+        let atoms = builder.frame.len() as u64;
+        if let Some(counted) = counted.filter(|counted| *counted != atoms) {
+            builder.frame.warnings.push(format!(
+                "a molecule has {atoms} atoms, but counts {counted}: the file is cut off, or the number wrong"
+            ));
         }
         let frame = builder.finish();
         let bonds = numbering.map(|_| bonds.finish());

@@ -193,6 +193,14 @@ fn fields<'l>(line: &Line<'l>, extended: bool) -> Result<[&'l [u8]; 4], FileErro
     if fields.iter().any(|field| field.is_empty()) { Err(wrong()) } else { Ok(fields) }
 }
 
+/// Returns whether a row is that of an atom: a position with decimals, and a symbol.
+fn is_atom(line: &Line, extended: bool) -> bool {
+    let is_number = |field: &[u8]| field.contains(&b'.') && number::parse(field).is_some();
+    fields(line, extended).is_ok_and(|fields| {
+        fields[..3].iter().all(|field| is_number(field)) && !is_number(fields[3])
+    })
+}
+
 impl FrameReader for Molfile {
     fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
         let schema = self.schema.clone().map_err(|message| self.lines.ended(message))?;
@@ -208,6 +216,15 @@ impl FrameReader for Molfile {
                 return Err(self.lines.ended(message).with_help("the file is cut off"));
             };
             builder.row(&line, fields(&line, plain.is_none())?.into_iter())?;
+        }
+        let is_extended = plain.is_none();
+        let is_more = self.row()?.is_some_and(|line| is_atom(&line, is_extended));
+        self.lines.back();
+        if is_more {
+            builder.warn_of_more_rows();
+            self.finish()?;
+            let frame = builder.finish();
+            return Ok(Some(ParticleFrame { title, unit: LengthUnit::Angstrom, ..frame }));
         }
         let bonds = if self.reads_bonds {
             Some(self.bonds(builder.frame.len(), plain.map(|counts| counts.bonds))?)

@@ -169,7 +169,7 @@ impl CellList {
             }
         }
         let boxed = Cell { origin, vectors, periodic };
-        let boxed = boxed.checked().unwrap_or(Cell { origin, ..cell });
+        let boxed = boxed.with_volume().unwrap_or(Cell { origin, ..cell });
         let heights = heights(&boxed);
         for axis in 0..3 {
             if periodic[axis] && reach > CELLS_TO_SIDE * heights[axis] {

@@ -6,7 +6,7 @@
 //! numbers that aren't needed.
 
 use crate::alternates::{AlternateAtom, Alternates};
-use crate::bonds::Listed;
+use crate::bonds::{End, Listed};
 use crate::element::{is_virtual_site, of_aligned_name, of_autodock_type};
 use crate::lines::{Line, Lines};
 use crate::schema::{Naming, Schema, Slot};
@@ -132,7 +132,7 @@ impl FrameReader for Pdb {
         // The type is derived from several columns unless the user names one.
         let has_kind = others.iter().any(|(_, slot)| *slot == Slot::Kind);
         let mut alternates = Alternates::default();
-        let mut serials: HashMap<Serial, u32> = HashMap::new();
+        let mut serials: HashMap<Serial, End<u32>> = HashMap::new();
         let (reads_bonds, mut own_bonds) = (self.bonds.is_some(), Vec::new());
         let mut at_end = true;
         let (mut atoms, mut ended) = (false, false);
@@ -155,7 +155,8 @@ impl FrameReader for Pdb {
                     atoms = true;
                     if reads_bonds && let Some(serial) = serial(line.bytes, 6) {
                         let row = builder.frame.len() as u32;
-                        serials.entry(serial).and_modify(|row| *row = MANY).or_insert(row);
+                        let end = serials.entry(serial);
+                        end.and_modify(|end| *end = End::Ambiguous).or_insert(End::Atom(row));
                     }
                     if !matches!(line.bytes.get(16), None | Some(b' ')) {
                         alternates.add(builder.frame.len(), alternate(line.bytes));
@@ -243,9 +244,6 @@ fn of_atom_names(mut schema: Schema) -> Schema {
     Schema { naming: Naming::Names, ..schema }
 }
 
-/// Marks a serial number that several atoms have.
-const MANY: u32 = u32::MAX;
-
 /// Returns the serial number in the five columns from `start`.
 fn serial(line: &[u8], start: usize) -> Option<Serial> {
     let mut serial = [b' '; 5];
@@ -267,26 +265,20 @@ fn add_bonds(
     path: &Arc<Path>,
     frame: &mut ParticleFrame,
     list: &[ListedBond],
-    serials: &HashMap<Serial, u32>,
+    serials: &HashMap<Serial, End<u32>>,
 ) -> Result<(), FileError> {
-    let (mut bonds, mut ambiguous) = (Listed::default(), 0_u64);
+    let mut bonds = Listed::default();
     // Records repeat bonds, but each counts once.
-    let mut dangling = HashSet::new();
+    let mut unclear = HashSet::new();
     for ends in list {
-        let rows = ends.map(|serial| serials.get(&serial).copied());
-        if rows.contains(&None) && !dangling.insert(ends) {
+        let rows = ends.map(|serial| serials.get(&serial).copied().unwrap_or(End::Nowhere));
+        let is_clear = rows.iter().all(|row| matches!(row, End::Atom(_)));
+        if !is_clear && !unclear.insert(ends) {
             continue;
         }
-        match bonds.ends(rows) {
-            Some(rows) if rows.contains(&MANY) => ambiguous += 1,
-            Some([first, second]) => bonds.push(path, (first, second, [0; 3]))?,
-            None => (),
+        if let Some([first, second]) = bonds.ends(rows) {
+            bonds.push(path, (first, second, [0; 3]))?;
         }
-    }
-    if ambiguous > 0 {
-        let warning =
-            format!("{ambiguous} bonds to serial numbers that several atoms have are left out");
-        frame.warnings.push(warning);
     }
     frame.bonds = Some(Bonds { partial: true, ..bonds.finish() });
     Ok(())
@@ -387,11 +379,11 @@ fn kind(key: &str) -> Kind {
     Kind { name: name.trim().to_owned(), element, virtual_site }
 }
 
-/// Parses the cell of `CRYST1`; a unit cell with edges of 1 means none.
+/// Parses the cell of `CRYST1`; a unit cell with edges of 1 means none, and so does a line that ends before its numbers.
 fn cell(line: &Line) -> Result<Option<Cell>, FileError> {
     let number = |start: usize, end: usize| {
         let field = fixed(line.bytes, start, end);
-        if field.is_empty() { Ok(0.0) } else { line.number(field) }
+        if field.is_empty() { Ok(f64::NAN) } else { line.number(field) }
     };
     let lengths = [number(6, 15)?, number(15, 24)?, number(24, 33)?];
     let angles = [number(33, 40)?, number(40, 47)?, number(47, 54)?];

@@ -71,7 +71,7 @@ impl Poscar {
         };
         let line = self.lines.require("its numbers of atoms")?;
         let no_cell = line.whole("the lattice vectors before have no volume");
-        let cell = cell.checked().ok_or(no_cell)?;
+        let cell = cell.with_volume().ok_or(no_cell)?;
         let mut symbols = None;
         if line.fields().next().is_some_and(|field| number::whole(field).is_none()) {
             symbols = Some(line.fields().map(symbol).collect::<Vec<String>>());
@@ -173,6 +173,10 @@ impl FrameReader for Poscar {
                     }
                 }
             }
+        }
+        // Velocities may follow after a blank line.
+        if !self.several && self.lines.next()?.is_some_and(|line| first_three(&line).is_ok()) {
+            builder.warn_of_more_rows();
         }
         let frame = builder.finish();
         let (cell, title) = (Some(header.cell), header.title.clone());

@@ -150,6 +150,10 @@ impl FrameReader for Psf {
                 builder.kind_of(&key, |key| kind(key, &mut weighing));
             }
         }
+        if self.lines.next()?.is_some_and(|line| fields(&line).is_ok()) {
+            builder.warn_of_more_rows();
+        }
+        self.lines.back();
         let mut frame = builder.finish();
         weighing.warn(&mut frame);
         if self.reads_bonds {

@@ -2,7 +2,7 @@
 
 use crate::source::{Source, is_standard_input};
 use crate::{
-    AlignBy, BondSource, Element, FileError, Format, FrameChoice, ParticleFrame, ReadOptions,
+    AlignBy, BondSource, Element, FileError, Format, FrameChoice, ParticleFrame, ReadOptions, Role,
     derived::Derived, formats, frame_reader::FrameReader, ids, shapes::ShapeColumns,
     smoothing::Window, sniff, superposition::Reference, topology::Joined, trails::History,
 };
@@ -241,6 +241,18 @@ pub(crate) fn open(
 ) -> Result<(Format, Box<dyn FrameReader>), FileError> {
     let mut source = Source::open(path, &options.progress)?;
     let format = sniff::format(&mut source, options)?;
+    let is_other = |(role, name): &&(Role, String)| {
+        [Role::X, Role::Y, Role::Z].contains(role) && !name.eq_ignore_ascii_case(role.name())
+    };
+    if format.fixes_positions()
+        && let Some((role, name)) = options.columns.roles.iter().find(is_other)
+    {
+        let (role, format) = (role.name(), format.name());
+        let message =
+            format!("`{role}={name}` has no effect: positions of {format} are x, y and z");
+        let error = FileError::whole_file(path, message);
+        return Err(error.with_help("leave x, y and z out of --columns"));
+    }
     let bonds = options.bonds.for_format(format);
     let reader = (formats::row(format).open)(source, &ReadOptions { bonds, ..options.clone() })?;
     Ok((format, reader))

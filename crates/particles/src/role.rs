@@ -26,6 +26,11 @@ pub enum Role {
 }
 
 impl Role {
+    /// Returns the name in `--columns`.
+    pub(crate) fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(_, role)| *role == self).map_or("", |(name, _)| name)
+    }
+
     /// All roles with their names on the command line.
     pub const ALL: [(&'static str, Self); 10] = [
         ("x", Self::X),

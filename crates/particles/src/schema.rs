@@ -89,12 +89,9 @@ impl Schema {
     ) -> Result<Self, String> {
         let choice = Choice { names: &names, options, known };
         let mut slots = vec![Slot::Skip; names.len()];
-        let mut axes = [0; 3];
-        for (axis, role) in [Role::X, Role::Y, Role::Z].into_iter().enumerate() {
-            let column =
-                choice.find(role)?.ok_or_else(|| choice.missing(aliases::USUAL[axis].1[0]))?;
+        let axes = choice.axes()?;
+        for (axis, column) in axes.into_iter().enumerate() {
             slots[column] = Slot::Position(axis);
-            axes[axis] = column;
         }
         let [x, y, z] = axes.map(|column| names[column].as_str());
         for axis in [y, z] {
@@ -132,6 +129,7 @@ impl Schema {
         let rest = options.columns.rest.unwrap_or(0);
         let unused = unused(&names, &slots);
         let roles = roles(&names, &slots, if has_radius { Role::Radius } else { Role::Diameter });
+        choice.check_roles(&roles)?;
         while slots.last() == Some(&Slot::Skip) {
             slots.pop();
         }
@@ -188,8 +186,8 @@ impl Naming {
 }
 
 fn unused(names: &[String], slots: &[Slot]) -> Vec<String> {
-    let columns = names.iter().zip(slots).filter(|(_, slot)| **slot == Slot::Skip);
-    columns.map(|(name, _)| name.clone()).collect()
+    let is_unused = |(name, slot): &(&String, &Slot)| **slot == Slot::Skip && !name.is_empty();
+    names.iter().zip(slots).filter(is_unused).map(|(name, _)| name.clone()).collect()
 }
 
 /// Returns the roles of columns; `size` is the role of a column with radii or diameters.
@@ -250,6 +248,57 @@ impl Choice<'_> {
             return Ok(Some(column));
         }
         Ok(aliases::usual(role).iter().find_map(|name| self.position(name)))
+    }
+
+    /// Returns the columns of positions.
+    fn axes(&self) -> Result<[usize; 3], String> {
+        let axes = [Role::X, Role::Y, Role::Z];
+        let is_axis = |(role, _): &(Role, String)| axes.contains(role);
+        if self.find(Role::X)?.is_none() && !self.options.columns.roles.iter().any(is_axis) {
+            let column = |name: &String| self.position(name);
+            let found = aliases::numbered_from_one()
+                .find_map(|[x, y, z]| Some([column(&x)?, column(&y)?, column(&z)?]));
+            if let Some(found) = found {
+                return Ok(found);
+            }
+        }
+        let mut columns = [0; 3];
+        for (axis, column) in columns.iter_mut().enumerate() {
+            let missing = || self.missing(aliases::USUAL[axis].1[0]);
+            *column = self.find(axes[axis])?.ok_or_else(missing)?;
+        }
+        Ok(columns)
+    }
+
+    /// Checks that the columns that the options name have their roles.
+    fn check_roles(&self, roles: &[(Role, String)]) -> Result<(), String> {
+        let radii = match &self.options.radii {
+            Radii::Column(name) => Some((Role::Radius, name.clone())),
+            _ => None,
+        };
+        for (role, typed) in radii.iter().chain(&self.options.columns.roles) {
+            let name = &self.names[self.need(typed)?];
+            let role_name = role.name();
+            let taken = roles.iter().filter(|(_, own)| own == name).map(|(own, _)| *own);
+            let others = roles.iter().filter(|(own, _)| own == role).map(|(_, own)| own);
+            let lengths = [Role::Radius, Role::Diameter];
+            return Err(match (taken.clone().next(), others.clone().next()) {
+                _ if taken.clone().any(|own| own == *role) => continue,
+                (Some(own), _) => {
+                    format!("the column `{name}` cannot be {role_name}, since it is {}", own.name())
+                }
+                (None, Some(other)) => {
+                    format!("{role_name} is the column `{other}`, and cannot be `{name}`, too")
+                }
+                (None, None) if lengths.contains(role) => {
+                    "radius and diameter are given, of which one is enough".to_owned()
+                }
+                (None, None) => {
+                    "colors need the columns of all three of red, green and blue".to_owned()
+                }
+            });
+        }
+        Ok(())
     }
 
     /// Returns the color columns, if all three exist.

@@ -159,7 +159,11 @@ fn detect(head: &[u8], options: &ReadOptions) -> Result<Format, String> {
         usual.iter().any(|own| own.eq_ignore_ascii_case(name) || own.eq_ignore_ascii_case(bare))
     };
     let is_above = |row: &[u8]| header::is_header(&names) && header::is_row(&names, separated, row);
-    let is_even = |row: &[u8]| separated || Fields::blanks(row).count() == names.len();
+    let is_even = |row: &[u8]| {
+        separated
+            || Fields::blanks(row).count() == names.len()
+            || header::is_row(&names, separated, row)
+    };
     let has_x = names.len() > 1 && names.iter().any(is_x) && second.is_none_or(is_even);
     if has_x || second.is_some_and(is_above) {
         return Ok(if separated { Format::Csv } else { Format::Xyzr });

@@ -3,13 +3,11 @@
 use crate::lines::{Line, Lines};
 use crate::{
     FileError, Format, ParticleFrame, ReadOptions, builder::Builder, fields::Fields,
-    frame_reader::FrameReader, header, line, number, schema::Schema, source::Source, units,
+    frame_reader::FrameReader, header, header::ROWS, line, number, schema::Schema, source::Source,
+    units,
 };
 use std::collections::HashMap;
 use std::sync::Arc;
-
-/// Number of rows from which columns of ids and decimal commas are detected.
-const ROWS: usize = 200;
 
 /// Reader of rows of `x y z` or `x y z radius`, optionally after an id; or of columns named by a
 /// header, which may be in a comment, as `numpy.savetxt` writes it.
@@ -44,6 +42,8 @@ impl Comments {
 struct Layout {
     columns: usize,
     has_ids: bool,
+    /// Number of first columns that number or name the rows, which a header may leave without a name: 0 or 1.
+    unnamed: usize,
     /// True if a header names the columns.
     has_names: bool,
     /// True if commas are decimal points.
@@ -66,14 +66,20 @@ impl Layout {
         names: &[String],
         options: &ReadOptions,
     ) -> Result<Schema, FileError> {
+        let mut names = names.to_vec();
+        if names.len() + self.unnamed == self.columns {
+            names.splice(..0, (0..self.unnamed).map(|_| String::new()));
+        } else {
+            self.unnamed = 0;
+        }
         if names.len() != self.columns {
             let message = format!("{} columns, but the header has {}", self.columns, names.len());
             let help = "give all rows the columns of the header";
             return Err(line.whole(message).with_help(help));
         }
-        let schema = Schema::new(names.to_vec(), options).map_err(|message| {
-            line.whole(message).with_help(header::columns_help(names, options))
-        })?;
+        let help = header::columns_help(&names, options);
+        let schema =
+            Schema::new(names, options).map_err(|message| line.whole(message).with_help(help))?;
         (self.has_ids, self.has_names) = (false, true);
         Ok(schema)
     }
@@ -127,14 +133,12 @@ impl Layout {
             .take(ROWS)
             .collect();
         let columns = rows.first().map_or(0, Vec::len);
-        let mut ids: Vec<u64> = rows.iter().filter_map(|row| number::whole(row.first()?)).collect();
-        ids.sort_unstable();
-        ids.dedup();
-        let different = rows.len() > 1 && ids.len() == rows.len();
-        let whole =
-            |row: &Vec<Vec<u8>>| row.iter().skip(1).all(|field| number::whole(field).is_some());
-        let has_ids = (4..=5).contains(&columns) && different && !rows.iter().any(whole);
-        Self { columns, has_ids, has_names: false, decimal_commas }
+        let first = rows.first().and_then(|row| row.first());
+        let is_number = first.is_some_and(|field| number::whole(field).is_some());
+        // Names of columns are a row here.
+        let unnamed = usize::from(header::has_index(rows.get(1..).unwrap_or_default()));
+        let has_ids = (4..=5).contains(&columns) && is_number && header::has_index(&rows);
+        Self { columns, has_ids, unnamed, has_names: false, decimal_commas }
     }
 }
 
@@ -225,6 +229,9 @@ impl FrameReader for Rows {
             }
             if self.layout.decimal_commas {
                 builder.frame.warnings.push("commas are read as decimal points".to_owned());
+            }
+            if self.layout.has_names && self.layout.unnamed > 0 {
+                builder.frame.warnings.push(header::UNNAMED.to_owned());
             }
             if self.layout.has_names {
                 builder.warn_of_unused();

@@ -97,8 +97,7 @@ impl FrameReader for Xsf {
         while let Some(line) = line(&mut self.lines)? {
             let fields = fields(line.bytes);
             // Keywords have no number after them, or one.
-            if fields.clone().nth(1).and_then(number::parse).is_none() || fields.clone().count() < 3
-            {
+            if fields.clone().count() < 3 {
                 self.lines.back();
                 break;
             }

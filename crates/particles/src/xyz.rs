@@ -85,6 +85,9 @@ impl FrameReader for Xyz {
         for atom in 0..count {
             let help = "the file is cut off, or its first line wrong";
             let line = self.lines.row(atom, count, "atoms", help)?;
+            if atom == 0 && comment.schema.is_some() {
+                builder.warn_of_surplus(line.fields().count());
+            }
             builder.row(&line, line.fields())?;
         }
         let frame = builder.finish();
@@ -149,10 +152,11 @@ impl Comment {
         let cell = lattice.transpose()?.map(|lattice| Cell {
             origin: DVec3::ZERO,
             vectors: [0, 3, 6].map(|row| DVec3::from_slice(&lattice[row..row + 3])),
-            periodic: value("pbc").map_or([true; 3], periodic),
+            periodic: [true; 3],
         });
+        let periodic = value("pbc").map_or(Ok([true; 3]), |value| periodic(line, value))?;
         let origin = origin.transpose()?.map_or(DVec3::ZERO, DVec3::from_array);
-        let cell = cell.and_then(|cell| Cell { origin, ..cell }.thickened().checked());
+        let cell = cell.and_then(|cell| Cell { origin, periodic, ..cell }.checked());
         let lammps = text.strip_prefix("Atoms. Timestep:").map(str::trim);
         let step = lammps.or_else(|| value("Step")).or_else(|| value("Timestep"));
         Ok(Self {
@@ -215,11 +219,25 @@ fn numbers<const COUNT: usize>(
     })
 }
 
-/// Parses boundary conditions such as `T T F`.
-fn periodic(value: &str) -> [bool; 3] {
+/// Parses boundary conditions such as `T T F`, or one for all edges.
+fn periodic(line: &Line, value: &str) -> Result<[bool; 3], FileError> {
     let letters = |letter: char| letter.is_whitespace() || ",[]".contains(letter);
-    let mut fields = value.split(letters).filter(|field| !field.is_empty());
-    [(); 3].map(|()| !fields.next().is_some_and(|field| field.starts_with(['F', 'f', '0'])))
+    let fields = value.split(letters).filter(|field| !field.is_empty());
+    let flags: Option<Vec<bool>> = fields
+        .map(|field| match field.as_bytes()[0] {
+            b'T' | b't' | b'1' => Some(true),
+            b'F' | b'f' | b'0' => Some(false),
+            _ => None,
+        })
+        .collect();
+    match flags.as_deref() {
+        Some([a, b, c]) => Ok([*a, *b, *c]),
+        Some([all]) => Ok([*all; 3]),
+        _ => {
+            let message = format!("pbc is `{value}`, but must be T or F for each of three edges");
+            Err(line.whole(message).with_help("write them in quotes, as in pbc=\"T T F\""))
+        }
+    }
 }
 
 /// Returns all `key=value` pairs of a comment, in order; quoted values may contain blanks.
@@ -287,7 +305,14 @@ mod tests {
         let pairs: Vec<_> =
             pairs.iter().map(|(key, value)| (key.as_str(), value.as_str())).collect();
         assert_eq!(pairs, expected);
-        assert_eq!(periodic("T F 0"), [true, false, false]);
-        assert_eq!(periodic("T"), [true; 3]);
+        let path = Path::new("p").into();
+        let line = Line::new(&path, 2, b"pbc=x");
+        let periodic = |value: &str| periodic(&line, value).ok();
+        assert_eq!(periodic("T F 0"), Some([true, false, false]));
+        assert_eq!(periodic("[True, False, True]"), Some([true, false, true]));
+        assert_eq!(periodic("T"), Some([true; 3]));
+        for wrong in ["", "T F", "T F F T", "T F yes"] {
+            assert_eq!(periodic(wrong), None, "{wrong}");
+        }
     }
 }

@@ -68,6 +68,8 @@ fn coordinates_have_names_of_many_programs() {
         "\"Center X [mm]\",\"Center Y [mm]\",\"Center Z [mm]\"",
         "X Coordinate,Y Coordinate,Z Coordinate",
         "posX,posY,posZ",
+        "coord_1,coord_2,coord_3",
+        "pos1,pos2,pos3",
     ] {
         for table in [
             format!("{names},q\n1,2,3,7\n"),
@@ -79,11 +81,39 @@ fn coordinates_have_names_of_many_programs() {
             assert_eq!(column(&table, "q"), [7.0], "{names}");
         }
     }
+    // Numbers from 0 come before those from 1, of which two look like others.
+    let table = frame("pos_0,pos_1,pos_2,pos_3\n1,2,3,4\n");
+    assert_eq!((table.x[0], table.y[0], table.z[0]), (1.0, 2.0, 3.0));
     // Plain names come first.
     assert_eq!(frame("center_x,center_y,center_z,x,y,z\n1,2,3,4,5,6\n").x, [4.0]);
     let typed =
         ReadOptions { columns: "x_coord".parse().expect("columns"), ..ReadOptions::default() };
     assert!(read_frame(&file("x_coord,y_coord,z_coord\n1,2,3\n").path, &typed).is_ok());
+}
+
+#[test]
+fn rows_may_have_one_column_more_than_the_header() {
+    // As R, and the texts of tables of pandas, have them.
+    for content in [
+        "x,y,z,q\n1,0.5,1,2,7\n2,1.5,2,3,8\n",
+        "\"x\" \"y\" \"z\" \"q\"\n\"a\" 0.5 1 2 7\n\"b\" 1.5 2 3 8\n",
+        "   x  y  z  q\n0  0.5  1  2  7\n1  1.5  2  3  8\n",
+        "x\ty\tz\tq\nfirst\t0.5\t1\t2\t7\nlast\t1.5\t2\t3\t8\n",
+    ] {
+        let table = frame(content);
+        assert_eq!((&table.x[..], &table.y[..]), (&[0.5, 1.5][..], &[1.0, 2.0][..]), "{content}");
+        assert_eq!(column(&table, "q"), [7.0, 8.0]);
+        assert_eq!(table.warnings.len(), 1, "{:?}", table.warnings);
+        assert!(table.warnings[0].starts_with("the first column has no name"));
+    }
+    // What may be a position is not taken for a number of the row.
+    for content in [
+        "x,y,z\n0.1,0.5,1,2\n0.2,1.5,2,3\n",
+        "x y z\n1 2 3 4\n2 3 4 5\n",
+        "x,y,z\n1,0.5,1,2\n1,1,2,3\n",
+    ] {
+        assert!(read_frame(&file(content).path, &all_columns()).is_err(), "{content}");
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Reads topologies of AMBER: sections of values in fixed columns (<https://ambermd.org/prmtop.pdf>). They have no
 //! positions: those of the frame are NaN.
 
-use crate::bonds::Listed;
+use crate::bonds::{End, Listed};
 use crate::lines::{Line, Lines};
 use crate::schema::{Naming, Schema, Slot};
 use crate::{
@@ -117,6 +117,16 @@ impl Prmtop {
     /// Takes a section, which must have `count` values at least, of which each atom has one.
     fn take(&mut self, name: &str, count: usize) -> Result<Option<Values>, FileError> {
         let Some(values) = self.sections.remove(name) else { return Ok(None) };
+        // Texts may end with blanks.
+        let has_more = matches!(&values, Values::Numbers(numbers) if numbers.len() > count);
+        if has_more {
+            let message =
+                format!("{name} has {} values, but there are {count} atoms", values.len());
+            return Err(self
+                .lines
+                .ended(message)
+                .with_help("correct the first number of POINTERS"));
+        }
         if values.len() < count {
             let message =
                 format!("{name} has {} values, but there are {count} atoms", values.len());
@@ -144,7 +154,8 @@ impl Prmtop {
         for bond in sections.iter().flat_map(|section| section.numbers().chunks_exact(3)) {
             let row = |place: f64| {
                 let row = place / 3.0;
-                (row >= 0.0 && row.fract() == 0.0 && row < atoms as f64).then_some(row as u32)
+                let is_atom = row >= 0.0 && row.fract() == 0.0 && row < atoms as f64;
+                End::from(is_atom.then_some(row as u32))
             };
             if let Some([first, second]) = bonds.ends([row(bond[0]), row(bond[1])]) {
                 bonds.push(self.lines.path(), (first, second, [0; 3]))?;

@@ -15,6 +15,22 @@ const MANY: u32 = u32::MAX;
 /// Marks numbers of no atom.
 const NONE: u32 = u32::MAX - 1;
 
+/// The atom at an end of a bond, by what the file calls it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum End<T> {
+    Atom(T),
+    /// There is no such atom.
+    Nowhere,
+    /// There are several such atoms.
+    Ambiguous,
+}
+
+impl<T> From<Option<T>> for End<T> {
+    fn from(atom: Option<T>) -> Self {
+        atom.map_or(Self::Nowhere, Self::Atom)
+    }
+}
+
 /// Rows of atoms by their numbers.
 pub(crate) enum Numbering {
     /// Rows by number, if these are not much more than the atoms.
@@ -43,32 +59,25 @@ impl Numbering {
         numbering
     }
 
-    /// Returns the row of the atom whose number is a field of a line; `None` if there is no such atom.
-    pub(crate) fn row(&self, line: &Line, field: &[u8]) -> Result<Option<u32>, FileError> {
+    /// Returns the row of the atom whose number is a field of a line.
+    pub(crate) fn row(&self, line: &Line, field: &[u8]) -> Result<End<u32>, FileError> {
         let number = line.whole_number(field)?;
         let row = match self {
             Self::Dense(rows) => usize::try_from(number).ok().and_then(|at| rows.get(at)),
             Self::Sparse(rows) => rows.get(&number),
         };
-        match row.copied().unwrap_or(NONE) {
-            NONE => Ok(None),
-            MANY => {
-                let error = line.error_at(field, format!("several atoms have the number {number}"));
-                Err(error.with_help("number the atoms, each once"))
-            }
-            row => Ok(Some(row)),
-        }
+        Ok(match row.copied().unwrap_or(NONE) {
+            NONE => End::Nowhere,
+            MANY => End::Ambiguous,
+            row => End::Atom(row),
+        })
     }
 }
 
-/// Returns the row of the atom that a field numbers from 1, of `atoms` atoms; `None` if there is no such atom.
-pub(crate) fn row_from_one(
-    line: &Line,
-    field: &[u8],
-    atoms: usize,
-) -> Result<Option<u32>, FileError> {
+/// Returns the row of the atom that a field numbers from 1, of `atoms` atoms.
+pub(crate) fn row_from_one(line: &Line, field: &[u8], atoms: usize) -> Result<End<u32>, FileError> {
     let row = line.whole_number(field)?.checked_sub(1);
-    Ok(row.filter(|row| *row < atoms as u64).map(|row| row as u32))
+    Ok(row.filter(|row| *row < atoms as u64).map(|row| row as u32).into())
 }
 
 /// Bonds that are being read.
@@ -79,15 +88,19 @@ pub(crate) struct Listed {
     book: Codebook,
     /// Number of bonds that end at no atom.
     dangling: u64,
+    /// Number of bonds that end at one of several atoms.
+    ambiguous: u64,
 }
 
 impl Listed {
-    /// Returns both ends of a bond; `None` if there is no atom at one of them: then the bond is counted, and left out.
-    pub(crate) fn ends<T>(&mut self, ends: [Option<T>; 2]) -> Option<[T; 2]> {
-        let [first, second] = ends;
-        let ends = first.zip(second).map(|(first, second)| [first, second]);
-        self.dangling += u64::from(ends.is_none());
-        ends
+    /// Returns both ends of a bond; `None` if it is not clear which atom is at one of them: then the bond is counted, and left out.
+    pub(crate) fn ends<T>(&mut self, ends: [End<T>; 2]) -> Option<[T; 2]> {
+        match ends {
+            [End::Atom(first), End::Atom(second)] => return Some([first, second]),
+            [End::Nowhere, _] | [_, End::Nowhere] => self.dangling += 1,
+            [End::Ambiguous, _] | [_, End::Ambiguous] => self.ambiguous += 1,
+        }
+        None
     }
 
     /// Adds a bond without a type.
@@ -124,7 +137,7 @@ impl Listed {
 
     /// Returns the bonds, each once; of equal ones, the first in the file.
     pub(crate) fn finish(self) -> Bonds {
-        let Self { mut bonds, mut kinds, dangling, .. } = self;
+        let Self { mut bonds, mut kinds, dangling, ambiguous, .. } = self;
         // A stable sort: the first in the file comes first.
         bonds.sort_by_key(|(bond, _)| *bond);
         bonds.dedup_by_key(|(bond, _)| *bond);
@@ -136,7 +149,7 @@ impl Listed {
         }
         let sorted: Vec<Bond> = bonds.iter().map(|(bond, _)| *bond).collect();
         // A bond of an atom to itself is no bond, unless its image is another one.
-        let mut bonds = Bonds { kinds, dangling, ..Bonds::of_sorted(&sorted) };
+        let mut bonds = Bonds { kinds, dangling, ambiguous, ..Bonds::of_sorted(&sorted) };
         bonds.map(|(first, second, shift)| {
             (first != second || shift != [0; 3]).then_some((first, second, shift))
         });
@@ -148,7 +161,7 @@ impl Listed {
 mod tests {
     use super::*;
 
-    fn row(numbers: &[f64], field: &str) -> Result<Option<u32>, String> {
+    fn row(numbers: &[f64], field: &str) -> Result<End<u32>, String> {
         let path = Path::new("p").into();
         let line = Line::new(&path, 7, field.as_bytes());
         let row = Numbering::of(numbers).row(&line, line.bytes);
@@ -159,13 +172,25 @@ mod tests {
     fn numbers_become_rows() {
         for numbers in [&[3.0, 1.0, 2.0][..], &[3e9, 1.0, 2.0]] {
             for (field, expected) in [("1", Some(1)), (" 2", Some(2)), ("0", None), ("4", None)] {
-                assert_eq!(row(numbers, field), Ok(expected), "{field}");
+                assert_eq!(row(numbers, field), Ok(expected.into()), "{field}");
             }
             let error = row(numbers, "x").expect_err("a letter");
             assert!(error.contains("not a whole number"), "{error}");
         }
-        assert!(row(&[5.0, 5.0], "5").is_err_and(|error| error.contains("several atoms")));
-        assert_eq!(row(&[f64::NAN, 0.5], "0"), Ok(None));
+        assert_eq!(row(&[5.0, 5.0], "5"), Ok(End::Ambiguous));
+        assert_eq!(row(&[f64::NAN, 0.5], "0"), Ok(End::Nowhere));
+    }
+
+    #[test]
+    fn bonds_with_unclear_ends_are_counted() {
+        let mut listed = Listed::default();
+        assert_eq!(listed.ends([End::Atom(1), End::Atom(2)]), Some([1, 2]));
+        for other in [End::Atom(1), End::Ambiguous] {
+            assert_eq!(listed.ends([End::Ambiguous, other]), None);
+        }
+        assert_eq!(listed.ends([End::<u32>::Ambiguous, End::Nowhere]), None);
+        let bonds = listed.finish();
+        assert_eq!((bonds.dangling, bonds.ambiguous), (1, 2));
     }
 
     #[test]

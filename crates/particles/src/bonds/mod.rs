@@ -10,7 +10,7 @@ pub use crate::frame::Bonds;
 pub(crate) use crate::frame::{Bond, ordered};
 pub use distance::from_distance;
 pub(crate) use images::nearest_image;
-pub(crate) use listed::{Listed, Numbering, row_from_one};
+pub(crate) use listed::{End, Listed, Numbering, row_from_one};
 pub use rules::{BondRules, BondSource};
 
 use crate::frame::ParticleFrame;
@@ -18,7 +18,7 @@ use crate::frame::ParticleFrame;
 impl ParticleFrame {
     /// Finds the bonds that a source asks for: those of the file stay as they are, others are found by
     /// distance. Bonds of the file get their shifts by the nearest images, and a warning counts those that end at no
-    /// particle.
+    /// particle, or at one of several.
     ///
     /// # Errors
     ///
@@ -55,14 +55,22 @@ impl ParticleFrame {
                 }
             }
         }
-        let dangling = self.bonds.as_mut().map_or(0, |bonds| std::mem::take(&mut bonds.dangling));
-        if dangling > 0 {
-            let text = match dangling {
-                1 => "1 bond ends at no atom of the file, and is left out".to_owned(),
-                _ => format!("{dangling} bonds end at no atom of the file, and are left out"),
-            };
-            self.warnings.push(text);
-        }
+        let Some(bonds) = &mut self.bonds else { return Ok(()) };
+        let [dangling, ambiguous] = [&mut bonds.dangling, &mut bonds.ambiguous].map(std::mem::take);
+        let to = "whose number or name other atoms have, too";
+        let texts = [
+            match dangling {
+                0 => None,
+                1 => Some("1 bond ends at no atom of the file, and is left out".to_owned()),
+                _ => Some(format!("{dangling} bonds end at no atom of the file, and are left out")),
+            },
+            match ambiguous {
+                0 => None,
+                1 => Some(format!("1 bond ends at an atom {to}, and is left out")),
+                _ => Some(format!("{ambiguous} bonds end at atoms {to}, and are left out")),
+            },
+        ];
+        self.warnings.extend(texts.into_iter().flatten());
         Ok(())
     }
 }

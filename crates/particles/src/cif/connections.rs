@@ -3,7 +3,10 @@
 
 use super::rows::Rows;
 use super::tokens::{Token, Tokens};
-use crate::{Bonds, FileError, ParticleFrame, bonds::Listed};
+use crate::{
+    Bonds, FileError, ParticleFrame,
+    bonds::{End, Listed},
+};
 use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -133,9 +136,8 @@ impl Atoms {
         rows.filter(|row| self.names[*row as usize] == name).collect()
     }
 
-    /// Returns the atoms that a connection names, at all alternate locations or at its own; `None` if there are none
-    /// of its name, or those of several residues.
-    fn find(&self, index: &mut Index, partner: &Partner) -> Option<Vec<u32>> {
+    /// Returns the atoms that a connection names in a residue, at all alternate locations or at its own.
+    fn find(&self, index: &mut Index, partner: &Partner) -> End<Vec<u32>> {
         // Columns of atoms with the values that they must have. An insertion code that is not known is none.
         let mut wanted: [Option<&[u8]>; RESIDUE.len()] = [None; RESIDUE.len()];
         for same in SAME {
@@ -161,17 +163,17 @@ impl Atoms {
         };
         let places = index.find(&self.residues, wanted);
         let mut found = places.iter().map(rows).filter(|(_, rows)| !rows.is_empty());
-        let (first, mut rows) = found.next()?;
+        let Some((first, mut rows)) = found.next() else { return End::Nowhere };
         for (residue, others) in found {
             // Residues of several names at a place are alternates.
             if residue.ids[..SAME[3][0]] != first.ids[..SAME[3][0]] {
-                return None;
+                return End::Ambiguous;
             }
             rows.extend(others);
         }
         let location = &partner.location;
         rows.retain(|row| location.is_empty() || self.locations[*row as usize] == *location);
-        Some(rows)
+        End::Atom(rows)
     }
 
     /// Adds the bonds between atoms at the same alternate location, or at any if one of them has none.

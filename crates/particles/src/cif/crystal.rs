@@ -69,6 +69,8 @@ const TITLES: [&str; 4] = [
 pub(in super::super) struct Crystal {
     tokens: Tokens,
     options: ReadOptions,
+    /// The next block with atoms, if it was looked for.
+    ahead: Option<Result<Option<Block>, FileError>>,
 }
 
 /// Contents of a data block.
@@ -109,7 +111,7 @@ impl Default for Block {
 
 impl Crystal {
     pub(in super::super) fn new(source: Source, options: &ReadOptions) -> Self {
-        Self { tokens: Tokens::new(Lines::new(source)), options: options.clone() }
+        Self { tokens: Tokens::new(Lines::new(source)), options: options.clone(), ahead: None }
     }
 
     /// Reads a tag and its value.
@@ -256,6 +258,24 @@ impl Crystal {
         Ok(Atoms { frame, occupancies, labels })
     }
 
+    /// Reads the next block with atoms, if there is one.
+    fn block(&mut self) -> Result<Option<Block>, FileError> {
+        let mut block = Block::default();
+        while let Some(token) = self.tokens.next()? {
+            match token {
+                Token::Loop => self.list(&mut block)?,
+                Token::Tag(tag) => {
+                    let tag = plain(tag);
+                    self.item(&tag, &mut block)?;
+                }
+                Token::Block if block.atoms.is_some() => break,
+                Token::Block => block = Block::default(),
+                Token::Value(_) => (),
+            }
+        }
+        Ok(Some(block).filter(|block| block.atoms.is_some()))
+    }
+
     /// Returns the frame of a block; `None` if it has no atoms.
     fn frame(&self, mut block: Block) -> Result<Option<ParticleFrame>, FileError> {
         let Some(Atoms { frame: mut atoms, mut occupancies, mut labels }) = block.atoms.take()
@@ -264,10 +284,15 @@ impl Crystal {
         };
         let fault = |message: String| FileError::whole_file(self.tokens.path(), message);
         let (lengths, angles) = (block.lengths, block.angles);
-        let cell = Cell::of_lengths(lengths, angles).ok_or_else(|| {
-            let message = format!("there is no cell with edges {lengths:?} and angles {angles:?}");
-            fault(message).with_help("a crystal needs _cell_length_a, _b and _c, and its angles")
-        })?;
+        // Symmetry may repeat atoms in a plane beyond it, so no crystal is a layer.
+        let cell = Cell::of_lengths(lengths, angles)
+            .filter(|_| !lengths.contains(&0.0))
+            .ok_or_else(|| {
+                let message =
+                    format!("there is no cell with edges {lengths:?} and angles {angles:?}");
+                fault(message)
+                    .with_help("a crystal needs _cell_length_a, _b and _c, and its angles")
+            })?;
         leave_out_vacant(&mut atoms, &mut occupancies, &mut labels);
         keep_main_groups(&mut atoms, &mut occupancies, &mut labels);
         let positions: Vec<DVec3> = (0..atoms.len()).map(|row| atoms.position(row)).collect();
@@ -298,20 +323,19 @@ impl Crystal {
 
 impl FrameReader for Crystal {
     fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
-        let mut block = Block::default();
-        while let Some(token) = self.tokens.next()? {
-            match token {
-                Token::Loop => self.list(&mut block)?,
-                Token::Tag(tag) => {
-                    let tag = plain(tag);
-                    self.item(&tag, &mut block)?;
-                }
-                Token::Block if block.atoms.is_some() => break,
-                Token::Block => block = Block::default(),
-                Token::Value(_) => (),
-            }
+        let block = match self.ahead.take() {
+            Some(block) => block?,
+            None => self.block()?,
+        };
+        block.map_or(Ok(None), |block| self.frame(block))
+    }
+
+    fn more(&mut self) -> Result<bool, FileError> {
+        if self.ahead.is_none() {
+            self.ahead = Some(self.block());
         }
-        self.frame(block)
+        // What is wrong there is told once it is read.
+        Ok(!matches!(self.ahead, Some(Ok(None))))
     }
 }
 

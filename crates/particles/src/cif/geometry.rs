@@ -5,7 +5,11 @@ use super::occupancy::Positions;
 use super::rows::Rows;
 use super::symmetry::{Operation, SAME, distance};
 use super::tokens::Tokens;
-use crate::{Bonds, FileError, bonds::Listed, number};
+use crate::{
+    Bonds, FileError,
+    bonds::{End, Listed},
+    number,
+};
 use glam::{DMat3, DVec3};
 use std::collections::HashMap;
 use std::path::Path;
@@ -76,7 +80,7 @@ impl Geometry<'_> {
         for bond in listed {
             let ends = [0, 1].map(|end| {
                 let row = self.labels.get(&bond.labels[end]).copied();
-                row.zip(self.operation(&bond.codes[end]))
+                End::from(row.zip(self.operation(&bond.codes[end])))
             });
             let Some(ends) = bonds.ends(ends) else { continue };
             if ends.iter().any(|(row, _)| *row == NOWHERE) {

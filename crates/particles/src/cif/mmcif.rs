@@ -2,6 +2,7 @@
 
 use super::component::{self, Component, ComponentAtoms};
 use super::connections::{self, Atoms, Connections};
+use super::crystal::strip_uncertainty;
 use super::rows::{Rows, add_dummies, is_dummy};
 use super::tokens::{Token, Tokens};
 use crate::alternates::{AlternateAtom, Alternates};
@@ -111,6 +112,14 @@ impl AlternateColumns {
     }
 }
 
+/// Returns the number of the last token, NaN if it is unknown.
+fn number(tokens: &Tokens) -> Result<f64, FileError> {
+    match tokens.word() {
+        b"." | b"?" => Ok(f64::NAN),
+        word => tokens.line().number(strip_uncertainty(word)),
+    }
+}
+
 impl MmCif {
     /// Creates the reader of mmCIF, or of the text of BinaryCIF.
     pub(in super::super) fn new(format: Format, source: Source, options: &ReadOptions) -> Self {
@@ -120,8 +129,8 @@ impl MmCif {
             options: options.clone(),
             sites: None,
             title: String::new(),
-            lengths: [0.0; 3],
-            angles: [0.0; 3],
+            lengths: [f64::NAN; 3],
+            angles: [f64::NAN; 3],
             connections: options.reads_bonds().then(Connections::default),
             items: Items::default(),
             component_items: Items::default(),
@@ -168,7 +177,6 @@ impl MmCif {
             return Ok(());
         };
         let axis = |letters: [&str; 3]| letters.iter().position(|letter| tag.ends_with(letter));
-        let number = || number::parse(value).unwrap_or(0.0);
         let bonds = [
             (connections::CONNECTIONS, &mut self.items),
             (connections::COMPONENT_BONDS, &mut self.component_items),
@@ -186,11 +194,11 @@ impl MmCif {
         } else if tag == "_struct.title" {
             self.title = String::from_utf8_lossy(value).trim().to_owned();
         } else if let Some(edge) = axis(["_cell.length_a", "_cell.length_b", "_cell.length_c"]) {
-            self.lengths[edge] = number();
+            self.lengths[edge] = number(&self.tokens)?;
         } else if let Some(angle) =
             axis(["_cell.angle_alpha", "_cell.angle_beta", "_cell.angle_gamma"])
         {
-            self.angles[angle] = number();
+            self.angles[angle] = number(&self.tokens)?;
         }
         Ok(())
     }

@@ -73,6 +73,11 @@ impl Tokens {
         Ok(tags)
     }
 
+    /// Returns the last token as it is in the file, without quotes.
+    pub(super) fn word(&self) -> &[u8] {
+        &self.word
+    }
+
     /// Returns the line of the last token.
     pub(super) fn line(&self) -> Line<'_> {
         Line::new(self.lines.path(), self.number, &self.line)

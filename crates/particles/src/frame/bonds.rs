@@ -21,6 +21,9 @@ pub struct Bonds {
     /// Number of bonds of the file that are left out, since they end at no particle, until
     /// [`ParticleFrame::find_bonds`](crate::ParticleFrame::find_bonds) warns of them.
     pub dangling: u64,
+    /// Number of bonds of the file that are left out, since they end at a number or name that several particles have, until
+    /// [`ParticleFrame::find_bonds`](crate::ParticleFrame::find_bonds) warns of them.
+    pub ambiguous: u64,
 }
 
 /// A bond: its particles, and the shift of the second one.
@@ -95,8 +98,8 @@ impl Bonds {
         let sorted: Vec<Bond> = bonds.iter().map(|(bond, _)| *bond).collect();
         let mut kinds = std::mem::take(&mut self.kinds);
         kinds.codes.change(RowChange::Pick(&bonds.iter().map(|bond| bond.1).collect::<Vec<u32>>()));
-        let (partial, dangling) = (self.partial, self.dangling);
-        *self = Self { kinds, partial, dangling, ..Self::of_sorted(&sorted) };
+        let Self { partial, dangling, ambiguous, .. } = *self;
+        *self = Self { kinds, partial, dangling, ambiguous, ..Self::of_sorted(&sorted) };
     }
 
     /// Renumbers the bonds after the particles for which `keep` is false were removed; their bonds are

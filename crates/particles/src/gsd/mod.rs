@@ -10,8 +10,14 @@ pub(super) use file::MAGIC;
 use self::file::File;
 use crate::{
     Bonds, Cell, FileError, Format, Kind, NumberColumn, ParticleFrame, Radii, ReadOptions, Role,
-    aliases, binary::BinaryFile, bonds::Listed, frame_reader::FrameReader,
-    options::component_names, schema::unknown_column, shapes::SEMI_AXES, source::Source,
+    aliases,
+    binary::BinaryFile,
+    bonds::{End, Listed},
+    frame_reader::FrameReader,
+    options::component_names,
+    schema::unknown_column,
+    shapes::SEMI_AXES,
+    source::Source,
     undrawn::Undrawn,
 };
 use glam::DVec3;
@@ -50,7 +56,16 @@ pub(super) struct Gsd {
 impl Gsd {
     pub(super) fn new(source: Source, options: &ReadOptions) -> Result<Self, FileError> {
         let path = source.path.clone();
-        let file = File::open(BinaryFile::open(source)?)?;
+        let content = BinaryFile::open(source)?;
+        let is_size = |role: Role| matches!(role, Role::Radius | Role::Diameter);
+        let is_other = |(role, name): &&(Role, String)| !is_size(*role) && name != role.name();
+        if let Some((role, name)) = options.columns.roles.iter().find(is_other) {
+            let role = role.name();
+            let error =
+                content.fault(format!("`{role}={name}` has no effect: GSD has its own {role}"));
+            return Err(error.with_help("assign radius or diameter, as in --columns radius=NAME"));
+        }
+        let file = File::open(content)?;
         Ok(Self { path, file, options: options.clone(), next: 0 })
     }
 
@@ -253,7 +268,7 @@ impl Gsd {
             let row = |end: usize| {
                 let row =
                     ends.get(end).copied().filter(|row| (0.0..particles as f64).contains(row));
-                row.map(|row| row as u32)
+                End::from(row.map(|row| row as u32))
             };
             let Some([first, second]) = bonds.ends([row(0), row(1)]) else { continue };
             let kind = kinds.get(bond).copied().unwrap_or(0.0) as usize;
@@ -379,9 +394,7 @@ pub(super) fn cell(edges: &[f64]) -> Option<Cell> {
     let a = DVec3::new(x, 0.0, 0.0);
     let b = DVec3::new(xy * y, y, 0.0);
     let c = DVec3::new(xz * z, yz * z, z);
-    Cell { origin: (a + b + c) * -0.5, vectors: [a, b, c], periodic: [true; 3] }
-        .thickened()
-        .checked()
+    Cell { origin: (a + b + c) * -0.5, vectors: [a, b, c], periodic: [true; 3] }.checked()
 }
 
 impl FrameReader for Gsd {

@@ -4,14 +4,14 @@ use super::bounds::tilted;
 use super::style::{self, Chosen, Facts, Layout, Sample};
 use super::unit;
 use super::velocities::{self, Velocities};
-use crate::bonds::{Listed, Numbering};
+use crate::bonds::{End, Listed, Numbering};
 use crate::lines::{Line, Lines};
 use crate::naming::{Weighing, drop_uncertain_elements, kind, of_atom};
 use crate::schema::{Naming, Schema};
 use crate::{
     Bonds, Cell, Element, FileError, Format, Kind, LengthUnit, NumberColumn, ParticleFrame,
-    ReadOptions, Role, builder::Builder, fields::Fields, frame_reader::FrameReader, number,
-    source::Source,
+    ReadOptions, Role, builder::Builder, error::listed, fields::Fields, frame_reader::FrameReader,
+    number, source::Source,
 };
 use glam::DVec3;
 use std::borrow::Cow;
@@ -46,6 +46,8 @@ struct Head {
     has_box: bool,
     /// Masses of types, by type name.
     masses: HashMap<String, Mass>,
+    /// Lines of the header that LAMMPS does not know.
+    unknown: Vec<String>,
 }
 
 /// The mass of a type.
@@ -173,11 +175,20 @@ impl Data {
                 fields.next().ok_or_else(error)
             };
             let number = field()?;
-            let row = ids.row(&line, number)?.ok_or_else(|| {
-                let name = String::from_utf8_lossy(number);
-                let message = format!("an ellipsoid of atom {name}, but there is no such atom");
-                line.error_at(number, message).with_help("remove the row, or add the atom")
-            })?;
+            let name = String::from_utf8_lossy(number);
+            let row = match ids.row(&line, number)? {
+                End::Atom(row) => row,
+                End::Nowhere => {
+                    let message = format!("an ellipsoid of atom {name}, but there is no such atom");
+                    let error = line.error_at(number, message);
+                    return Err(error.with_help("remove the row, or add the atom"));
+                }
+                End::Ambiguous => {
+                    let message = format!("several atoms have the number {name}");
+                    let error = line.error_at(number, message);
+                    return Err(error.with_help("number the atoms, each once"));
+                }
+            };
             for column in &mut values {
                 column[row as usize] = line.number(field()?)?;
             }
@@ -224,6 +235,9 @@ impl Data {
                 return Err(line.whole(message).with_help("correct the number in the header"));
             }
             builder.row(&line, line.fields())?;
+        }
+        if self.pass(false)? > 0 {
+            builder.warn_of_more_rows();
         }
         let mut frame = builder.finish();
         if !is_ambiguous {
@@ -382,6 +396,16 @@ impl Head {
             DVec3::new(value(0), value(1), value(2))
         };
         let pair = |at: usize| [vector(0)[0], vector(0)[1]][at];
+        let count = match names {
+            [b"xlo", b"xhi"] | [b"ylo", b"yhi"] | [b"zlo", b"zhi"] => 2,
+            [b"xy", b"xz", b"yz"] | [b"avec" | b"bvec" | b"cvec"] | [b"abc", b"origin"] => 3,
+            _ => 0,
+        };
+        if numbers.len() < count {
+            let help = "a line of the header has its numbers before its name";
+            let message = format!("{} numbers, but there must be {count}", numbers.len());
+            return Err(line.whole(message).with_help(help));
+        }
         match names {
             [b"atoms"] => self.atoms = line.whole_number(numbers.first().unwrap_or(&&b""[..]))?,
             [b"atom", b"types"] => self.types = vector(0)[0] as u64,
@@ -400,7 +424,8 @@ impl Head {
                 let count = numbers.first().and_then(|count| number::whole(count));
                 self.counts.extend(thing.zip(count));
             }
-            _ => (),
+            [] | [_, b"types"] | [b"extra", ..] => (),
+            _ => self.unknown.push(format!("`{}`", line.text().trim())),
         }
         Ok(())
     }
@@ -490,6 +515,10 @@ impl Head {
                     frame.unit = LengthUnit::Angstrom;
                 }
             }
+        }
+        if !self.unknown.is_empty() {
+            let lines: Vec<&str> = self.unknown.iter().map(String::as_str).collect();
+            frame.warnings.push(listed("lines of its header that are not known", &lines));
         }
         frame.cell = self.cell();
         frame.title = self.title;

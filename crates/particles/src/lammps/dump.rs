@@ -188,6 +188,9 @@ impl FrameReader for Dump {
         for atom in 0..count {
             let help = "the file is cut off; choose an earlier frame";
             let line = self.lines.row(atom, count, "atoms", help)?;
+            if atom == 0 && !self.is_yaml {
+                builder.warn_of_surplus(line.fields().count());
+            }
             if self.is_yaml {
                 builder.row(&line, yaml::values(&line))?;
             } else {

@@ -148,7 +148,7 @@ impl NetCdf {
         let origin = self.values(origin)?.map_or(DVec3::ZERO, DVec3::from_array);
         let cell =
             lengths.and_then(|lengths| Cell::of_lengths(lengths, angles.unwrap_or([90.0; 3])));
-        Ok(cell.and_then(|cell| Cell { origin, ..cell }.checked()))
+        Ok(cell.and_then(|cell| Cell { origin: cell.origin + origin, ..cell }.checked()))
     }
 
     /// Returns whether the coordinates of the next frame are in the file.

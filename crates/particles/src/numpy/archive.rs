@@ -2,7 +2,7 @@
 
 use super::array::{Array, Transpose};
 use super::schema;
-use crate::builder::{Builder, clamp_channel};
+use crate::builder::{Builder, clamp_channel, is_color, warn_of_colors};
 use crate::categories::{Codebook, add};
 use crate::{
     FileError, Format, Kind, NumberColumn, ParticleFrame, Radii, ReadOptions, Rgb, Role,
@@ -94,6 +94,13 @@ impl Seek for Entry<'_> {
 impl Npz {
     pub(in super::super) fn new(source: Source, options: &ReadOptions) -> Result<Self, FileError> {
         let path = source.path.clone();
+        let is_idle =
+            |(role, _): &&(Role, String)| matches!(role, Role::Green | Role::Blue | Role::Material);
+        if let Some((role, name)) = options.columns.roles.iter().find(is_idle) {
+            let message = format!("`{}={name}` has no effect on arrays", role.name());
+            let help = "colors are one array of three columns, as in --columns red=NAME";
+            return Err(FileError::whole_file(&path, message).with_help(help));
+        }
         let file = BufReader::new(source.into_file()?);
         let archive = ZipArchive::new(file).map_err(|error| {
             let error =
@@ -483,6 +490,8 @@ impl FrameReader for Npz {
         }
         if let Some(name) = self.find(Role::Red, &COLORS) {
             let values = self.rows(&name, 3, count)?;
+            let beyond = values.iter().filter(|value| !is_color(**value)).count();
+            warn_of_colors(&mut frame, beyond as u64);
             let color = |row: &[f64]| {
                 Rgb::new(clamp_channel(row[0]), clamp_channel(row[1]), clamp_channel(row[2]))
             };
