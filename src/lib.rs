@@ -120,7 +120,8 @@ pub mod scene {
             ArrowCentering, ArrowSizes, ArrowStyle, Arrows, BondRules, BondSource, Bonds, Cell,
             Coloring, ColumnColors, ElementColors, FirstFrame, Legend, Model, Opacity, Orientation,
             ParticleStyle, Particles, PeriodicError, Selection, Shapes, Trails, TrajectoryReader,
-            TypeMaterial, TypeStyle, UpReason, VectorColumns, of_frame, of_frame_in, read,
+            TypeMaterial, TypeStyle, UpReason, VectorColumns, accept_radii_expression, of_frame,
+            of_frame_in, read,
         };
     }
 }

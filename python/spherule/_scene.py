@@ -31,13 +31,16 @@ class Scene:
     Args:
         particles: :class:`Particles`, (n, 3) positions, a tuple of the columns x, y and z, or None.
         radius: A number or (n,) numbers, more than 0, in the unit of the positions; or ``"vdw"`` or ``"covalent"``,
-            radii of elements; or ``"column:NAME"``. By default the particles' own, or those of elements, or half of the
+            radii of elements; or ``"column:NAME"``, of which the name may be an expression as in
+            ``"column:0.3 * mass^(1/3)"``. By default the particles' own, or those of elements, or half of the
             mean spacing.
         semi_axes, orientation: Semi-axes and quaternions of ellipsoids, as for :class:`Particles`.
         color, kinds, materials, columns, cell, origin, periodic, unit, title: As for :class:`Particles`, whose own
             color and materials they replace.
         values: (n,) finite numbers that a color map turns into colors; ``label_of_values`` names them in the color bar.
-        color_by: The name of a column that gives the colors.
+        color_by: The name of a column that gives the colors, or an expression over columns, as in
+            ``"norm(velocity)"`` or ``"c_pe / mass"``: ``+ - * / ^``, ``abs``, ``sqrt``, ``exp``, ``log``, ``log10``,
+            ``min``, ``max`` and ``norm``.
         color_map, color_range, color_log: The map, the numbers at its ends, and whether it is logarithmic.
         color_bar: True or a position: draw the bar of these colors. A dict is the section of a scene file.
         colors: ``"jmol"`` or ``"cpk"``: colors of elements.
@@ -49,11 +52,11 @@ class Scene:
         bonds: ``"auto"`` for those of the particles, or else by covalent radii; ``"file"`` for those of the
             particles alone, ``"none"``, or rules such as ``"C-C<1.7,*-H<1.2"``;
             ``bond_radius`` is the radius of their sticks.
-        opacity: A number from 0 to 1, or the name of a column whose numbers it is, perhaps with those that become 0 and
-            1, as in ``"charge:-1,1"``: what is behind is seen without refraction.
+        opacity: A number from 0 to 1, or the name of a column or an expression whose numbers it is, perhaps with those
+            that become 0 and 1, as in ``"charge:-1,1"``: what is behind is seen without refraction.
         arrows: Vectors to draw: (n, 3) numbers; ``"velocity"``, ``"force"``, ``"dipole"`` or ``"spin"``; three names of
-            columns, or what these have in common before x, y and z. ``arrow_scale`` is the length for a vector of
-            length 1, ``arrow_radius`` that of shafts, ``arrow_color`` a color for all, and ``arrow_center`` the part
+            columns or expressions, or what these have in common before x, y and z. ``arrow_scale`` is the length for a
+            vector of length 1, ``arrow_radius`` that of shafts, ``arrow_color`` a color for all, and ``arrow_center`` the part
             at the particle: ``"tail"``, ``"middle"`` or ``"head"``.
         translucent: Draw only particles for which this is true with ``opacity`` (0.2 if that is not given).
         select: Draw only particles for which this is true, as in ``"element != H and z > 10"``.
@@ -272,10 +275,12 @@ def _columns(particles: Any, given: dict[str, Any], sections: Mapping[str, Any])
     count = len(particles)
     if radii is not None and radii.startswith("column:"):
         name = radii.removeprefix("column:")
-        if name not in particles.columns:
+        is_expression = any(sign in name for sign in "+-*/^(")
+        if name not in particles.columns and not is_expression:
             there = ", ".join(particles.columns) or "none"
             raise Error(f"`radius` is {radii!r}, but there is no column `{name}`; columns are {there}")
-        radii, radius = None, particles.columns[name]
+        if name in particles.columns:
+            radii, radius = None, particles.columns[name]
     table: dict[str, Any] = particles._table(radii, _values.number("radius_scale", given.get("radius_scale", 1.0)))
     if radius is not None:
         table["radius"] = _arrays.column("radius", radius, count)

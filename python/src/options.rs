@@ -13,7 +13,7 @@ use spherule::particles::{
 };
 use spherule::scene::particles::{
     ArrowCentering, ArrowStyle, BondSource, Coloring, ColumnColors, ElementColors, Model, Opacity,
-    ParticleStyle, Selection, TypeMaterial, TypeStyle,
+    ParticleStyle, Selection, TypeMaterial, TypeStyle, accept_radii_expression,
 };
 use std::str::FromStr;
 
@@ -164,11 +164,12 @@ impl ParticleTable<'_> {
         frame.unit = unit_of(&self.unit);
         frame.format = format.unwrap_or_default();
         let radii = self.radii.as_deref().map_or(Ok(Radii::Auto), Radii::from_str);
-        let options = ReadOptions {
+        let mut options = ReadOptions {
             radii: radii.map_err(|message| error(py, &message))?,
             radius_scale: self.radius_scale,
             ..ReadOptions::default()
         };
+        accept_radii_expression(&mut options);
         Ok((frame, options))
     }
 }

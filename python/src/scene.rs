@@ -387,7 +387,8 @@ impl Work {
         }
         let path = Path::new(ARRAYS);
         let title = frame.title.clone();
-        let (columns, bonds) = (request.style.columns(), request.style.bond_source());
+        let columns = [request.style.columns(), options.columns.wanted.clone()].concat();
+        let bonds = request.style.bond_source();
         frame
             .add_derived_columns(&columns, &bonds)
             .and_then(|()| frame.find_bonds(&bonds))

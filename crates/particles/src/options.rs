@@ -52,6 +52,9 @@ pub enum Radii {
     Covalent,
     /// Values of a column, in the file's unit of length.
     Column(String),
+    /// Values of an expression over columns, in the file's unit of length, which the conversion to spheres evaluates;
+    /// frames have the radii of the file.
+    Expression(String),
 }
 
 impl FromStr for Radii {
@@ -186,7 +189,11 @@ impl ReadOptions {
         } = self;
         let radius = match radii {
             Radii::Missing(radius) | Radii::Constant(radius) => Some(*radius),
-            Radii::Auto | Radii::VanDerWaals | Radii::Covalent | Radii::Column(_) => None,
+            Radii::Auto
+            | Radii::VanDerWaals
+            | Radii::Covalent
+            | Radii::Column(_)
+            | Radii::Expression(_) => None,
         };
         let numbers =
             [("radius_scale", Some(*radius_scale)), ("scale", Some(*scale)), ("radii", radius)];

@@ -20,7 +20,8 @@ use std::str::FromStr;
 #[command(next_help_heading = "Particle appearance")]
 pub(in crate::cli) struct AppearanceArgs {
     /// Draw only particles for which EXPR is true, as in 'element != H and z > 10'. Operators: == != < <= > >=,
-    /// and, or, not, + - * /, parentheses. Also words of VMD and MDAnalysis: protein, backbone, water, name CA CB,
+    /// and, or, not, + - * / ^, parentheses; functions: abs, sqrt, exp, log, log10, min, max, and norm, as in
+    /// norm(velocity). Also words of VMD and MDAnalysis: protein, backbone, water, name CA CB,
     /// resid 5 to 10, within 5 of resname LIG, same residue as name ZN. Strings are words or quoted; names with
     /// other characters than letters, digits and _ . : [ ] need backticks. Columns have the file's names, or the
     /// names of other programs: resname, resid, chainid, segid, name, bfactor, occ, serial, q, mol
@@ -29,10 +30,11 @@ pub(in crate::cli) struct AppearanceArgs {
     /// Color scheme for elements, also where the file has colors [default: the file's colors, or else jmol]
     #[arg(long, value_enum, value_name = "SCHEME", conflicts_with = "color_by")]
     colors: Option<Scheme>,
-    /// Color by a column of the file, or by x, y, z, radius, type, element, id, index, coordination (number of
-    /// bonds), cluster (connected particles, by size) or speed (of vx, vy and vz): numbers by a color map, strings by a cycle of thirty colors.
-    /// Names of other programs are accepted, as for --select
-    #[arg(long, value_name = "COLUMN")]
+    /// Color by an expression, as in 'charge / mass' or 'norm(force)' (see --select); or by a column: of the file, or
+    /// x, y, z, radius, type, element, id, index, coordination (number of bonds), cluster (connected particles, by
+    /// size) or speed (of vx, vy and vz): numbers by a color map, strings by a cycle of thirty colors. Names of other
+    /// programs are accepted, as for --select
+    #[arg(long, value_name = "EXPR", allow_hyphen_values = true)]
     color_by: Option<String>,
     /// Color map for --color-by; append _r to reverse it, as in `viridis_r` [default: viridis]
     #[arg(long, value_name = "MAP", requires = "color_by", value_parser = map())]
@@ -66,21 +68,21 @@ pub(in crate::cli) struct AppearanceArgs {
     /// Radius of the sticks of bonds, in the file's unit [default: a tenth of the median radius, 0.15 in licorice]
     #[arg(long, value_name = "R", value_parser = values::positive)]
     bond_radius: Option<f64>,
-    /// Opacity of particles, and of their bonds: a number from 0 to 1, or a column whose numbers it is, perhaps with
-    /// those that become 0 and 1, as in charge:-1,1. What is behind is seen without refraction, and shadows are as
+    /// Opacity of particles, and of their bonds: a number from 0 to 1, or a column or expression whose numbers it is,
+    /// perhaps with those that become 0 and 1, as in charge:-1,1. What is behind is seen without refraction, and shadows are as
     /// thin [default: 1, or 0.2 with --translucent]
     #[arg(
         long,
-        value_name = "NUMBER|COLUMN[:LOW,HIGH]",
+        value_name = "NUMBER|EXPR[:LOW,HIGH]",
         value_parser = |text: &str| text.parse::<WithText<Opacity>>()
     )]
     opacity: Option<WithText<Opacity>>,
     /// Draw only particles for which EXPR is true with --opacity, the others opaque; as in --select
     #[arg(long, value_name = "EXPR", allow_hyphen_values = true, value_parser = |text: &str| text.parse::<WithText<Selection>>())]
     translucent: Option<WithText<Selection>>,
-    /// Draw an arrow for a vector of each particle: velocity, force, dipole or spin; three columns, as in vx,vy,vz;
-    /// or what their names have in common before x, y and z
-    #[arg(long, value_name = "VECTOR|X,Y,Z", value_parser = |text: &str| text.parse::<WithText<VectorColumns>>())]
+    /// Draw an arrow for a vector of each particle: velocity, force, dipole or spin; three columns or expressions, as
+    /// in vx,vy,0*vz; or what their names have in common before x, y and z
+    #[arg(long, value_name = "VECTOR|X,Y,Z", allow_hyphen_values = true, value_parser = |text: &str| text.parse::<WithText<VectorColumns>>())]
     arrows: Option<WithText<VectorColumns>>,
     /// Length of the arrow of a vector of length 1, in the file's unit [default: the median arrow is four times as
     /// long as the median radius]

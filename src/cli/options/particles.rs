@@ -6,7 +6,7 @@ use super::values;
 use super::with_text::{self, WithText};
 use crate::cli::failure::Failure;
 use spherule_render::scene::particles::{
-    Columns, Format, FrameChoice, Radii, ReadOptions, Selection,
+    Columns, Format, FrameChoice, Radii, ReadOptions, Selection, accept_radii_expression,
 };
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -27,8 +27,9 @@ pub(in crate::cli) struct ParticleArgs {
     /// numbered image of each frame, with one camera that frames all of them
     #[arg(long, value_name = "N|first|last|all|A-B", value_parser = |text: &str| text.parse::<WithText<FrameArg>>())]
     frame: Option<WithText<FrameArg>>,
-    /// Radii: vdw or covalent by element, a column of the file, or one radius for all
-    #[arg(long, value_name = "vdw|covalent|column:NAME|R", value_parser = |text: &str| text.parse::<WithText<Radii>>())]
+    /// Radii: vdw or covalent by element, a column of the file or an expression, as in 'column:0.3*mass^(1/3)', or
+    /// one radius for all
+    #[arg(long, value_name = "vdw|covalent|column:EXPR|R", value_parser = |text: &str| text.parse::<WithText<Radii>>())]
     radii: Option<WithText<Radii>>,
     /// Scale factor for all radii
     #[arg(long, value_name = "FACTOR", value_parser = values::positive)]
@@ -64,7 +65,7 @@ pub(in crate::cli) struct ParticleArgs {
 impl ParticleArgs {
     /// Converts the options for the reader.
     pub(in crate::cli) fn options(&self) -> ReadOptions {
-        ReadOptions {
+        let mut options = ReadOptions {
             format: self.format,
             columns: self.columns.as_deref().cloned().unwrap_or_default(),
             frame: self
@@ -81,7 +82,9 @@ impl ParticleArgs {
             smooth: self.smooth.unwrap_or(0),
             trail: self.trail.unwrap_or(0),
             ..ReadOptions::default()
-        }
+        };
+        accept_radii_expression(&mut options);
+        options
     }
 
     /// Returns whether any option was given.

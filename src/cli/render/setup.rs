@@ -302,7 +302,7 @@ fn request(args: &RenderArgs, style: ParticleStyle, part: bool) -> Request {
 fn with_columns(source: Source, looks: &ParticleStyle) -> Result<Source, Failure> {
     match source {
         Source::Particles(path, mut options) => {
-            options.columns.wanted = looks.columns();
+            options.columns.wanted.extend(looks.columns());
             options.bonds = looks.bond_source();
             let element = |style: &TypeStyle| Some((style.name.clone(), style.element?));
             options.elements = looks.types.iter().filter_map(element).collect();

@@ -17,6 +17,7 @@ pub use first_frame::{FirstFrame, TrajectoryReader};
 pub use model::Model;
 pub use orientation::{Orientation, UpReason};
 pub use periodic::PeriodicError;
+pub use radii::accept_radii_expression;
 pub use select::{Fault, MoleculeCensus, Selection};
 pub use spheres::Particles;
 pub use spherule_particles::{

@@ -1,12 +1,15 @@
 //! Radii of particles: the file's, those of elements, or a guess.
 
 use super::Element;
-use super::ParticleFrame;
+use super::select::expression;
 use super::spheres::Warnings;
+use super::style::{add_numbers, numbers, with_synonyms};
 use super::{Kind, Kinds};
+use super::{ParticleFrame, Particles};
 use super::{Radii, ReadOptions};
 use crate::elementary::{exp, ln};
 use crate::scene::FileError;
+use spherule_particles::internals::clipped;
 use std::path::Path;
 
 /// Radius of an atom whose element is unknown or has no radius in the table, in angstrom.
@@ -31,6 +34,10 @@ pub(super) fn radii(
         return Ok(FoundRadii { radius: Vec::new(), guessed: false });
     }
     let own = std::mem::take(&mut frame.radius);
+    if matches!(options.radii, Radii::Expression(_)) {
+        let radius = if own.is_empty() { vec![1.0; count] } else { own };
+        return Ok(FoundRadii { radius, guessed: false });
+    }
     let has_elements = frame.kinds.table.iter().any(|kind| kind.element.is_some());
     let table = |warnings: &mut Warnings, radius: fn(Element) -> Option<f64>| {
         let factor = frame.unit.per_angstrom() * options.scale * options.radius_scale;
@@ -62,6 +69,47 @@ pub(super) fn radii(
         _ => vec![1.0; count],
     };
     Ok(FoundRadii { radius, guessed })
+}
+
+/// Takes arithmetic in the name of the column of radii as an expression, and wants its columns.
+pub fn accept_radii_expression(options: &mut ReadOptions) {
+    let Radii::Column(text) = &options.radii else { return };
+    if expression::is_arithmetic(text) {
+        options.columns.wanted.extend(with_synonyms(expression::columns(text)));
+        options.radii = Radii::Expression(text.clone());
+    }
+}
+
+/// Gives particles the radii of an expression, if the options have one, and drops those for which it is none.
+pub(super) fn apply_expression(
+    path: &Path,
+    particles: &mut Particles,
+    options: &ReadOptions,
+) -> Result<(), FileError> {
+    let Radii::Expression(text) = &options.radii else { return Ok(()) };
+    let count = particles.spheres.len();
+    if count == 0 {
+        return Ok(());
+    }
+    add_numbers(particles, &expression::columns(text));
+    let factor = options.scale * options.radius_scale;
+    let radius = numbers(path, particles, text, "radii")?;
+    let radius: Vec<f64> = radius.iter().map(|radius| radius * factor).collect();
+    let keep: Vec<bool> = radius.iter().map(|&radius| radius > 0.0 && radius.is_finite()).collect();
+    particles.spheres.radius = radius;
+    let dropped = keep.iter().filter(|&&keep| !keep).count();
+    if dropped == 0 {
+        return Ok(());
+    }
+    let reason = "their radii are not finite, or 0 or less";
+    if dropped == count && !options.allow_empty {
+        let message = format!("none of its {count} rows is a sphere: {reason}");
+        return Err(FileError::whole_file(path, message));
+    }
+    let warning = format!("{}: {dropped} of {count} rows were dropped: {reason}", path.display());
+    particles.frame.warnings.push(clipped(&warning));
+    particles.retain(&keep);
+    Ok(())
 }
 
 fn table_radii(

@@ -1,6 +1,6 @@
 //! Conversion of particle frames to spheres: finds radii and colors, and drops invalid rows.
 
-use super::radii::{FoundRadii, half_spacing, radii};
+use super::radii::{FoundRadii, apply_expression, half_spacing, radii};
 use super::style::{Arrows, Column, ElementColors, ID, INDEX, TypeMaterial};
 use super::{Cell, FirstFrame, ParticleFrame, ReadOptions, TextColumn};
 use crate::color::category;
@@ -137,6 +137,7 @@ pub(super) fn spheres(
     frame.warnings = warnings.list;
     let mut particles = Particles { spheres, frame, material_names, ..Particles::default() };
     (particles.guessed_radius, particles.first_frame) = (guessed_radius, first_frame);
+    apply_expression(path, &mut particles, options)?;
     Ok(particles)
 }
 

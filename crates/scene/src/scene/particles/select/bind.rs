@@ -1,5 +1,6 @@
 //! Binding names to columns, and evaluating conditions on rows.
 
+use super::functions::Function;
 use super::grammar::{Node, Tree, Value};
 use super::spatial;
 use super::words::{Sign, SpannedError};
@@ -32,12 +33,19 @@ enum Number<'p> {
     Texts(Cow<'p, Codes>, Vec<f64>),
     Negative(Box<Self>),
     Arithmetic(Box<Self>, Vec<(Sign, Self)>),
+    Call(Function, Vec<Self>),
 }
 
 /// Evaluates the condition for each row.
 pub(super) fn rows(tree: &Tree, particles: &Particles) -> Result<Vec<bool>, SpannedError> {
     let truth = truth(tree, particles)?;
     Ok(truth.rows(particles.spheres.len()))
+}
+
+/// Evaluates the number for each row.
+pub(super) fn numbers(tree: &Tree, particles: &Particles) -> Result<Vec<f64>, SpannedError> {
+    let number = number(tree, particles, "only columns of numbers can be computed with")?;
+    Ok((0..particles.spheres.len()).into_par_iter().map(|row| number.at(row)).collect())
 }
 
 impl Truth<'_> {
@@ -92,6 +100,9 @@ impl Number<'_> {
                         _ => left / right,
                     }
                 })
+            }
+            Self::Call(function, numbers) => {
+                function.of(numbers.iter().map(|number| number.at(row)))
             }
         }
     }
@@ -243,7 +254,8 @@ fn comparison<'p>(
         let truths = names.iter().map(|name| (name == text) == (sign == Sign::Equal));
         return Ok(Truth::Texts(codes, truths.collect()));
     }
-    Ok(Truth::Compare(sign, number(left, particles)?, number(right, particles)?))
+    let help = "compare it with a word or a text in quotes";
+    Ok(Truth::Compare(sign, number(left, particles, help)?, number(right, particles, help)?))
 }
 
 /// Returns the column that a word names.
@@ -254,34 +266,41 @@ fn column_of<'p>(tree: &Tree, particles: &'p Particles) -> Option<Column<'p>> {
     }
 }
 
-fn number<'p>(tree: &Tree, particles: &'p Particles) -> Result<Number<'p>, SpannedError> {
+/// Binds a number; `help` says what to do about a column of texts.
+fn number<'p>(
+    tree: &Tree,
+    particles: &'p Particles,
+    help: &str,
+) -> Result<Number<'p>, SpannedError> {
     let wrong = |message: &str| Err((tree.span.clone(), message.to_owned()));
     match &tree.node {
         Node::Number(number) => Ok(Number::Constant(*number)),
         Node::Word(name) | Node::Column(name) => {
-            column(name, particles).map_err(|message| (tree.span.clone(), message))
+            column(name, particles, help).map_err(|message| (tree.span.clone(), message))
         }
         Node::Text(_) => wrong("only a column of texts can be compared with a text"),
-        Node::Negative(inner) => Ok(Number::Negative(Box::new(number(inner, particles)?))),
+        Node::Negative(inner) => Ok(Number::Negative(Box::new(number(inner, particles, help)?))),
         Node::Arithmetic(first, rest) => {
-            let first = number(first, particles)?;
-            let rest = rest.iter().map(|(sign, part)| Ok((*sign, number(part, particles)?)));
+            let first = number(first, particles, help)?;
+            let rest = rest.iter().map(|(sign, part)| Ok((*sign, number(part, particles, help)?)));
             Ok(Number::Arithmetic(Box::new(first), rest.collect::<Result<_, SpannedError>>()?))
+        }
+        Node::Call(function, parts) => {
+            let parts = parts.iter().map(|part| number(part, particles, help));
+            Ok(Number::Call(*function, parts.collect::<Result<_, _>>()?))
         }
         _ => wrong("expected a number, but this is a condition"),
     }
 }
 
-fn column<'p>(name: &str, particles: &'p Particles) -> Result<Number<'p>, String> {
+fn column<'p>(name: &str, particles: &'p Particles, help: &str) -> Result<Number<'p>, String> {
     match Column::find(particles, name) {
         Some(Column::Numbers(values)) => Ok(Number::Column(values)),
         Some(Column::Texts { names, codes }) => {
             let number = |name: &&str| name.parse().unwrap_or(f64::NAN);
             let numbers: Vec<f64> = names.iter().map(number).collect();
             if numbers.iter().all(|number| number.is_nan()) {
-                return Err(format!(
-                    "the column `{name}` holds texts: compare it with a word or a text in quotes"
-                ));
+                return Err(format!("the column `{name}` holds texts: {help}"));
             }
             Ok(Number::Texts(codes, numbers))
         }

@@ -1,7 +1,10 @@
 //! Syntax trees of conditions, by recursive descent no deeper than [`MAX_DEPTH`].
 
+use super::functions::Function;
 use super::vocabulary::Group;
 use super::words::{Sign, SpannedError, Word, Words};
+use crate::scene::particles::VectorColumns;
+use crate::suggest;
 use std::ops::Range;
 
 /// Maximum nesting of parentheses and signs, since the stack is finite.
@@ -23,6 +26,7 @@ pub(super) enum Node {
     Negative(Box<Tree>),
     /// Operands in order, evaluated from left to right.
     Arithmetic(Box<Tree>, Vec<(Sign, Tree)>),
+    Call(Function, Vec<Tree>),
     Compare(Sign, Box<[Tree; 2]>),
     Not(Box<Tree>),
     All(Vec<Tree>),
@@ -67,20 +71,37 @@ pub(super) struct Parser<'t> {
 const COMPARISONS: [Sign; 6] =
     [Sign::Equal, Sign::NotEqual, Sign::Less, Sign::LessEqual, Sign::Greater, Sign::GreaterEqual];
 
-/// Parses all words.
+/// Parses all words, as a condition.
 pub(super) fn parse(words: Words, text: &str) -> Result<Tree, SpannedError> {
     let mut parser = Parser { words, next: 0, text, depth: 0 };
     let tree = parser.any()?;
-    match parser.advance() {
-        None => Ok(tree),
-        Some((Word::Sign(Sign::Close), span)) => Err((span, "unmatched `)`".to_owned())),
-        Some((_, span)) => {
-            Err((span, "expected `and`, `or` or an operator before this".to_owned()))
-        }
-    }
+    parser.end("expected `and`, `or` or an operator before this")?;
+    Ok(tree)
+}
+
+/// Parses all words, as a number.
+pub(super) fn parse_number(words: Words, text: &str) -> Result<Tree, SpannedError> {
+    let mut parser = Parser { words, next: 0, text, depth: 0 };
+    let tree = parser.sum()?;
+    parser.end("expected an operator before this, as in `x + y`")?;
+    Ok(tree)
+}
+
+fn unexpected_comma(span: Range<usize>) -> SpannedError {
+    (span, "unexpected `,`".to_owned())
 }
 
 impl Parser<'_> {
+    /// Refuses words that are left, with a message for those that are neither parentheses nor commas.
+    fn end(&mut self, message: &str) -> Result<(), SpannedError> {
+        match self.advance() {
+            None => Ok(()),
+            Some((Word::Sign(Sign::Close), span)) => Err((span, "unmatched `)`".to_owned())),
+            Some((Word::Sign(Sign::Comma), span)) => Err(unexpected_comma(span)),
+            Some((_, span)) => Err((span, message.to_owned())),
+        }
+    }
+
     /// Takes the next word if it is one of these operators.
     fn take(&mut self, signs: &[Sign]) -> Option<(Sign, Range<usize>)> {
         match self.peek(0)? {
@@ -174,7 +195,7 @@ impl Parser<'_> {
     }
 
     fn product(&mut self) -> Result<Tree, SpannedError> {
-        self.chain(&[Sign::Times, Sign::Divided], Self::operand)
+        self.chain(&[Sign::Times, Sign::Divided], Self::power)
     }
 
     fn chain(
@@ -196,6 +217,17 @@ impl Parser<'_> {
         Ok(Tree { node: Node::Arithmetic(Box::new(first), rest), span })
     }
 
+    /// Parses an operand and its power, which binds before a sign: `-x^2` is `-(x^2)`, and `x^y^z` is `x^(y^z)`.
+    fn power(&mut self) -> Result<Tree, SpannedError> {
+        let base = self.operand()?;
+        let Some((_, sign)) = self.take(&[Sign::Power]) else { return Ok(base) };
+        self.deeper(&sign)?;
+        let exponent = self.power()?;
+        self.depth -= 1;
+        let span = base.span.start..exponent.span.end;
+        Ok(Tree { node: Node::Call(Function::Power, vec![base, exponent]), span })
+    }
+
     fn operand(&mut self) -> Result<Tree, SpannedError> {
         let Some((word, span)) = self.advance() else {
             let end = self.text.len();
@@ -203,12 +235,14 @@ impl Parser<'_> {
         };
         let node = match word {
             Word::Number(number) => Node::Number(number),
+            Word::Bare(name) if self.is_call(&name, &span) => return self.call(&name, span),
             Word::Bare(name) => Node::Word(name),
             Word::Column(name) => Node::Column(name),
             Word::Text(text) => Node::Text(text),
             Word::Mixed(_, message) => return Err((span, message)),
             Word::Sign(Sign::Minus) => return self.negative(span),
             Word::Sign(Sign::Open) => return self.parentheses(span),
+            Word::Sign(Sign::Comma) => return Err(unexpected_comma(span)),
             Word::Sign(_) => {
                 return Err((span, "expected a number or a name before this".to_owned()));
             }
@@ -218,7 +252,7 @@ impl Parser<'_> {
 
     fn negative(&mut self, sign: Range<usize>) -> Result<Tree, SpannedError> {
         self.deeper(&sign)?;
-        let inner = self.operand()?;
+        let inner = self.power()?;
         self.depth -= 1;
         let span = sign.start..inner.span.end;
         Ok(Tree { node: Node::Negative(Box::new(inner)), span })
@@ -233,4 +267,51 @@ impl Parser<'_> {
         };
         Ok(Tree { span: open.start..close.end, ..inner })
     }
+
+    /// Returns whether the word before the next one is called: a function before a parenthesis, or any name that
+    /// touches one.
+    fn is_call(&self, name: &str, span: &Range<usize>) -> bool {
+        let follows = self.peek(0).filter(|(word, _)| *word == Word::Sign(Sign::Open));
+        follows.is_some_and(|(_, open)| open.start == span.end || Function::named(name).is_some())
+    }
+
+    /// Parses the arguments of a function.
+    fn call(&mut self, name: &str, span: Range<usize>) -> Result<Tree, SpannedError> {
+        let Some(function) = Function::named(name) else {
+            let help = suggest::help(name, Function::names(), "functions are");
+            return Err((span, format!("no function is named `{name}`; {help}")));
+        };
+        let open = self.take(&[Sign::Open]).map_or(span.clone(), |(_, open)| open);
+        self.deeper(&open)?;
+        let mut arguments = vec![self.sum()?];
+        while self.take(&[Sign::Comma]).is_some() {
+            arguments.push(self.sum()?);
+        }
+        self.depth -= 1;
+        let Some((_, close)) = self.take(&[Sign::Close]) else {
+            return Err(match self.advance() {
+                None => (open, "unclosed parenthesis".to_owned()),
+                Some((_, span)) => {
+                    (span, "expected an operator, `,` or `)` before this".to_owned())
+                }
+            });
+        };
+        if function == Function::Norm {
+            arguments = components(arguments);
+        }
+        let span = span.start..close.end;
+        match function.refuse(arguments.len()) {
+            Some(what) => Err((span, format!("`{name}` takes {what}"))),
+            None => Ok(Tree { node: Node::Call(function, arguments), span }),
+        }
+    }
+}
+
+/// Replaces the name of a vector by its components.
+fn components(arguments: Vec<Tree>) -> Vec<Tree> {
+    let [Tree { node: Node::Word(name) | Node::Column(name), span }] = &arguments[..] else {
+        return arguments;
+    };
+    let Ok(VectorColumns(names)) = name.parse() else { return arguments };
+    names.map(|name| Tree { node: Node::Column(name), span: span.clone() }).into()
 }

@@ -6,11 +6,13 @@
 //! ```
 //!
 //! The language is our own: `evalexpr` has a license that programs cannot pass on freely, and CEL
-//! distinguishes integers from floats and has no bare words. It has no loops and no functions, so time
+//! distinguishes integers from floats and has no bare words. It has no loops, so time
 //! is proportional to the length of the condition times the number of particles.
 
 mod bind;
 mod census;
+pub(super) mod expression;
+mod functions;
 mod grammar;
 mod lists;
 mod spatial;
@@ -35,7 +37,9 @@ const NAME: &str = "selection";
 /// condition   comparison, not condition, condition and condition, condition or condition
 /// comparison  number == number; also != < <= > >=
 ///             column == text; also !=
-/// number      5, 1e-3, column, -number, number + number; also - * /
+/// number      5, 1e-3, column, -number, number + number; also - * / ^ (or **), and functions
+/// function    abs(number); also sqrt, exp, log (natural), log10; min(number, number), also max, of two or more;
+///             norm(number, number, number), or of the components of a vector, as in norm(velocity)
 /// column      a name: letters, digits, and _ . : [ ]; any other name in `backticks`
 /// text        a word, or "anything" in quotes
 /// ```
@@ -55,7 +59,7 @@ const NAME: &str = "selection";
 /// Distances are in the unit of positions, which GRO files have in nanometers. `within`, `around`, `same` and
 /// `byres` bind like `not`: before `and`.
 ///
-/// Precedence, from low to high: `or`, `and`, `not`, comparisons, `+ -`, `* /`; parentheses as usual. A
+/// Precedence, from low to high: `or`, `and`, `not`, comparisons, `+ -`, `* /`, signs, `^`; parentheses as usual. A
 /// word that is compared with a column of texts is a text, even if a column has this name. Missing
 /// numbers are NaN: every comparison with them is false except `!=`. A column of texts is also one of
 /// numbers if its texts are numbers. Columns are those of the file, by its own names or their aliases
@@ -195,7 +199,11 @@ fn collect(tree: &Tree, names: &mut Vec<String>) {
                 collect(operand, names);
             }
         }
-        Node::All(parts) | Node::Any(parts) => parts.iter().for_each(|part| collect(part, names)),
+        Node::All(parts) | Node::Any(parts) | Node::Call(_, parts) => {
+            for part in parts {
+                collect(part, names);
+            }
+        }
         Node::OneOf(column, _) => collect(column, names),
         Node::Group(group) => names.extend(group.columns().iter().map(|&name| name.to_owned())),
         Node::Within { of, .. } => collect(of, names),

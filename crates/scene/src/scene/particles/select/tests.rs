@@ -58,6 +58,13 @@ fn conditions_select_rows() {
         ("element != 'h'", &[1.0, 2.0, 3.0, 4.0]),
         ("element != Xe", &[1.0, 2.0, 3.0, 4.0]),
         ("radius > 1.5", &[2.0]),
+        ("id^2 == 9 or id ** 0.5 == 2", &[3.0, 4.0]),
+        ("-id^2 == -4", &[2.0]),
+        ("2^-id^2 == 1/16", &[2.0]),
+        ("abs(-id) == sqrt(4) or exp(log(q)) > 2", &[2.0, 4.0]),
+        ("log10(10 * (id - 1)) >= 1", &[2.0, 3.0, 4.0]),
+        ("min(id, 2, x + 5) == 2 and MAX (id, 3) == 3", &[2.0, 3.0]),
+        ("norm(id, 0*id, -2*id) > sqrt(5) * 2.5", &[3.0, 4.0]),
     ] {
         assert_eq!(ids(condition), expected, "{condition}");
     }
@@ -95,6 +102,18 @@ fn errors_are_reported_at_their_position() {
         ("element > 5", "element: the column `element` holds texts"),
         ("z > 99", "none of its 4 particles is selected"),
         ("elemnt == C", "elemnt: no column is named `elemnt`; did you mean `element`?"),
+        ("z > sqr(5)", "sqr: no function is named `sqr`; did you mean `sqrt`?"),
+        ("z > sqrt(5", "(: unclosed parenthesis"),
+        ("z > sqrt(5 6)", "6: expected an operator, `,` or `)` before this"),
+        ("z > sqrt(1, 2)", "sqrt(1, 2): `sqrt` takes one number"),
+        ("z > max(1)", "max(1): `max` takes two numbers or more"),
+        ("norm(x, y) > 1", "norm(x, y): `norm` takes a vector or three numbers"),
+        ("norm(velocity) > 1", "velocity: no column is named `vx`"),
+        ("sqrt(z > 5) > 1", ">: expected an operator, `,` or `)` before this"),
+        ("sqrt(element) > 1", "element: the column `element` holds texts"),
+        ("element == C, O", ",: unexpected `,`"),
+        ("z > ,", ",: unexpected `,`"),
+        ("z > 2 ^", ": expected a number or a name here"),
         ("element == c", "c: no particle has `c` in this column; did you mean `C`?"),
         ("element != h or z > 5", "h: no particle has `h` in this column; did you mean `H`?"),
         ("'Cl' == element", "none of its 4 particles is selected"),
@@ -108,12 +127,14 @@ fn errors_are_reported_at_their_position() {
 fn conditions_may_be_long_but_not_deep() {
     let long = vec!["id + 1 - 1 == 2"; 20_000].join(" or ");
     assert_eq!(ids(&long), [2.0]);
-    for (open, close) in [("(", ")"), ("not ", ""), ("-", "")] {
+    for (open, close) in [("(", ")"), ("not ", ""), ("-", ""), ("1^", "")] {
         let deep = |depth| format!("{}id == 2{}", open.repeat(depth), close.repeat(depth));
         let fault = deep(100_000).parse::<Selection>().expect_err("too deep");
         assert!(fault.message.starts_with("more than 64"), "{fault}");
         assert!(deep(64).parse::<Selection>().is_ok());
     }
+    let deep = |depth| format!("{}id{} == 2", "abs(".repeat(depth), ")".repeat(depth));
+    assert!(deep(64).parse::<Selection>().is_ok() && deep(65).parse::<Selection>().is_err());
 }
 
 #[test]

@@ -37,18 +37,21 @@ pub(super) enum Sign {
     Minus,
     Times,
     Divided,
+    Power,
+    Comma,
     Open,
     Close,
 }
 
 /// All operators in symbols; of two with the same beginning, the longer comes first.
-const SIGNS: [(&str, Sign); 15] = [
+const SIGNS: [(&str, Sign); 18] = [
     ("==", Sign::Equal),
     ("!=", Sign::NotEqual),
     ("<=", Sign::LessEqual),
     (">=", Sign::GreaterEqual),
     ("&&", Sign::And),
     ("||", Sign::Or),
+    ("**", Sign::Power),
     ("<", Sign::Less),
     (">", Sign::Greater),
     ("!", Sign::Not),
@@ -56,6 +59,8 @@ const SIGNS: [(&str, Sign); 15] = [
     ("-", Sign::Minus),
     ("*", Sign::Times),
     ("/", Sign::Divided),
+    ("^", Sign::Power),
+    (",", Sign::Comma),
     ("(", Sign::Open),
     (")", Sign::Close),
 ];

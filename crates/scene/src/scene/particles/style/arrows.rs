@@ -1,6 +1,6 @@
 //! Arrows for the vectors of particles: velocities, forces, dipoles, spins.
 
-use super::columns::{Column, missing};
+use super::columns::numbers;
 use crate::scene::particles::Particles;
 use crate::scene::particles::model::median;
 use crate::scene::particles::orientation::bounds_of_centers;
@@ -39,7 +39,7 @@ const HEAD_SHARE: f64 = 0.6;
 /// The columns of the components of vectors.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct VectorColumns(
-    /// The names for x, y and z.
+    /// The names for x, y and z, or expressions over columns.
     pub [String; 3],
 );
 
@@ -47,9 +47,9 @@ impl FromStr for VectorColumns {
     type Err = String;
 
     /// Parses `velocity`, `force`, `dipole` or `spin`, the common part of three names, as in `mu` for `mux`, `muy` and `muz`, or
-    /// three names, as in `a,b,c`.
+    /// three names or expressions, as in `a,b,c` and `-fx,max(fy, 0),0*fz`.
     fn from_str(text: &str) -> Result<Self, String> {
-        let names: Vec<&str> = text.split(',').map(str::trim).collect();
+        let names: Vec<&str> = parts(text).into_iter().map(str::trim).collect();
         let fault = || format!("`{text}` is neither a vector nor three columns, as in vx,vy,vz");
         match names[..] {
             _ if names.iter().any(|name| name.is_empty()) => Err(fault()),
@@ -65,6 +65,20 @@ impl FromStr for VectorColumns {
             _ => Err(fault()),
         }
     }
+}
+
+/// Returns the parts of a text between commas that are in no parentheses.
+fn parts(text: &str) -> Vec<&str> {
+    let mut depth = 0_usize;
+    let is_between = |letter: char| {
+        match letter {
+            '(' => depth += 1,
+            ')' => depth = depth.saturating_sub(1),
+            _ => (),
+        }
+        letter == ',' && depth == 0
+    };
+    text.split(is_between).collect()
 }
 
 /// The place of an arrow at its particle.
@@ -189,14 +203,7 @@ impl ArrowStyle {
 
     /// Returns the vector of each particle, turned as its frame was.
     fn vectors(&self, path: &Path, particles: &Particles) -> Result<Vec<DVec3>, FileError> {
-        let column = |name: &String| match Column::find(particles, name) {
-            Some(Column::Numbers(values)) => Ok(values),
-            Some(Column::Texts { .. }) => {
-                let message = format!("the column `{name}` has texts, but vectors are numbers");
-                Err(FileError::whole_file(path, message).with_help("name columns of numbers"))
-            }
-            None => Err(missing(path, particles, name)),
-        };
+        let column = |name: &String| numbers(path, particles, name, "vectors");
         let [x, y, z] = &self.columns.0;
         let (x, y, z) = (column(x)?, column(y)?, column(z)?);
         let vector = |row: usize| particles.frame.rotation * DVec3::new(x[row], y[row], z[row]);
@@ -275,6 +282,8 @@ mod tests {
         assert_eq!(columns("Velocity"), Ok(["vx", "vy", "vz"].map(str::to_owned)));
         assert_eq!(columns("c_mu_"), Ok(["c_mu_x", "c_mu_y", "c_mu_z"].map(str::to_owned)));
         assert_eq!(columns("a, b,c[3]"), Ok(["a", "b", "c[3]"].map(str::to_owned)));
+        let expressions = ["-vx", "max(vy, 0)", "0*vz"].map(str::to_owned);
+        assert_eq!(columns("-vx, max(vy, 0),0*vz"), Ok(expressions));
         for bad in ["", "a,b", "a,,c", "a,b,c,d"] {
             assert!(columns(bad).is_err(), "{bad}");
         }

@@ -5,6 +5,7 @@ use super::columns::Column;
 use crate::color::Rgb;
 use crate::scene::particles::{Codes, Element, Particles};
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// A name that a color stands for.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,7 +34,7 @@ impl Particles {
     pub fn categories(&self, coloring: &Coloring) -> Option<Vec<Category>> {
         let kinds = &self.frame.kinds;
         if let Coloring::Column(colors) = coloring {
-            let Column::Texts { names, codes } = Column::find(self, &colors.column)? else {
+            let Column::Texts { names, codes } = colors.column_of(Path::new(""), self).ok()? else {
                 return None;
             };
             let groups = self.groups(&codes, names.len())?;

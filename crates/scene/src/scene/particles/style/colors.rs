@@ -1,10 +1,11 @@
 //! Colors of elements and of columns.
 
-use super::columns::{self, Column};
+use super::columns::Column;
 use crate::color::elements::{cpk, jmol};
 use crate::color::{Map, Range, RangeError, Rgb, Scale, Spacing, category};
 use crate::scene::FileError;
 use crate::scene::particles::Codes;
+use crate::scene::particles::select::expression;
 use crate::scene::particles::{Element, LengthUnit, Particles};
 use std::collections::HashMap;
 use std::path::Path;
@@ -47,7 +48,8 @@ impl ElementColors {
 /// [`CATEGORIES`](crate::color::CATEGORIES) texts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ColumnColors {
-    /// The column: one of the file, or `x`, `y`, `z`, `radius`, `type`, `element`, `id`.
+    /// The column: one of the file, or `x`, `y`, `z`, `radius`, `type`, `element`, `id`; or an expression over columns, in
+    /// the language of [`Selection`](crate::scene::particles::Selection)s, as in `norm(velocity)` and `c_pe / mass`.
     pub column: String,
     /// Color map for numbers; `None` is the default map.
     pub map: Option<Map>,
@@ -68,16 +70,52 @@ pub struct Legend {
     pub label: String,
 }
 
+/// The colors of rows, and what is to be said of them.
+pub(super) struct Painted {
+    /// Linear colors; empty if no value has one.
+    pub(super) colors: Vec<Rgb>,
+    /// Their meaning, if they stand for numbers.
+    pub(super) legend: Option<Legend>,
+    pub(super) warnings: Vec<String>,
+}
+
 impl ColumnColors {
+    /// Colors all particles.
     pub(super) fn apply(
         &self,
         path: &Path,
         particles: &mut Particles,
         allow_empty: bool,
     ) -> Result<Option<Legend>, FileError> {
-        let column = Column::find(particles, &self.column)
-            .ok_or_else(|| columns::missing(path, particles, &self.column))?;
-        let mut undefined = 0;
+        let Painted { colors, legend, warnings } =
+            self.paint(path, particles, None, allow_empty)?;
+        particles.spheres.color = colors;
+        particles.frame.warnings.extend(warnings);
+        Ok(legend)
+    }
+
+    /// Returns the column, or the numbers of the expression.
+    pub(super) fn column_of<'p>(
+        &self,
+        path: &Path,
+        particles: &'p Particles,
+    ) -> Result<Column<'p>, FileError> {
+        expression::evaluate(path, particles, &self.column)
+    }
+
+    /// Returns the colors of some rows, whose values have the range of colors if none is given; `None` for all rows.
+    pub(super) fn paint(
+        &self,
+        path: &Path,
+        particles: &Particles,
+        rows: Option<&[usize]>,
+        allow_empty: bool,
+    ) -> Result<Painted, FileError> {
+        let mut column = self.column_of(path, particles)?;
+        if let Some(rows) = rows {
+            column = column.of_rows(rows);
+        }
+        let (mut undefined, mut warnings) = (0, Vec::new());
         let (colors, legend, missing) = match &column {
             Column::Numbers(values) => match self.scale(values) {
                 Ok(scale) => {
@@ -96,14 +134,13 @@ impl ColumnColors {
                 (table_colors(codes, &categories(names)), None, 0)
             }
         };
-        particles.spheres.color = colors;
         if missing > 0 {
             let (path, name) = (path.display(), &self.column);
             let (particles_have, are) = words(missing);
             let warning = format!(
                 "{path}: {missing} {particles_have} no value of `{name}` and {are} drawn in gray"
             );
-            particles.frame.warnings.push(warning);
+            warnings.push(warning);
         }
         if undefined > 0 {
             let (path, name) = (path.display(), &self.column);
@@ -112,14 +149,14 @@ impl ColumnColors {
                 "{path}: {undefined} {particles_have} a `{name}` of 0 or less, which has no place on a logarithmic \
                  scale, and {are} drawn in gray"
             );
-            particles.frame.warnings.push(warning);
+            warnings.push(warning);
         }
-        Ok(legend)
+        Ok(Painted { colors, legend, warnings })
     }
 
     /// Returns whether the column holds numbers.
     pub fn is_numeric(&self, particles: &Particles) -> bool {
-        matches!(Column::find(particles, &self.column), Some(Column::Numbers(_)))
+        matches!(self.column_of(Path::new(""), particles), Ok(Column::Numbers(_)))
     }
 
     /// Returns the error for a column without a range.

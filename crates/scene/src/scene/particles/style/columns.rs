@@ -2,8 +2,10 @@
 
 use crate::scene::particles::Particles;
 use crate::scene::particles::Role;
+use crate::scene::particles::select::expression;
 use crate::scene::particles::{Codes, Kind};
 use crate::scene::{FileError, Rgb};
+use crate::suggest;
 use spherule_particles::internals::aliases;
 use spherule_particles::internals::unknown_column;
 use std::borrow::Cow;
@@ -125,6 +127,19 @@ impl<'p> Column<'p> {
         Self::Texts { names, codes: Cow::Owned(Codes::Words(codes)) }
     }
 
+    /// Returns the values of these rows.
+    pub(super) fn of_rows(self, rows: &[usize]) -> Self {
+        match self {
+            Self::Numbers(values) => {
+                Self::Numbers(rows.iter().map(|&row| values[row]).collect::<Vec<_>>().into())
+            }
+            Self::Texts { names, codes } => {
+                let codes = Codes::Words(rows.iter().map(|&row| codes.code(row)).collect());
+                Self::Texts { names, codes: Cow::Owned(codes) }
+            }
+        }
+    }
+
     /// Returns whether any row has a value.
     pub(in super::super) fn has_values(&self) -> bool {
         match self {
@@ -153,7 +168,32 @@ pub(in super::super) fn unknown(particles: &Particles, name: &str) -> String {
     unknown_column(name, names(particles).into_iter())
 }
 
+/// Returns the name of a column that is nearly this one.
+pub(in super::super) fn nearest<'p>(particles: &'p Particles, name: &str) -> Option<&'p str> {
+    suggest::nearest(name, names(particles))
+}
+
+/// Returns the numbers of a column or of an expression; `purpose` names what they are for, in the plural.
+///
+/// # Errors
+///
+/// There is no such column, it has texts, or the expression is invalid.
+pub(in super::super) fn numbers<'p>(
+    path: &Path,
+    particles: &'p Particles,
+    text: &str,
+    purpose: &str,
+) -> Result<Cow<'p, [f64]>, FileError> {
+    match expression::evaluate(path, particles, text)? {
+        Column::Numbers(numbers) => Ok(numbers),
+        Column::Texts { .. } => {
+            let message = format!("the column `{text}` has texts, but {purpose} are numbers");
+            Err(FileError::whole_file(path, message).with_help("name a column of numbers"))
+        }
+    }
+}
+
 /// Returns the error for a column that does not exist, with the names of those that do.
-pub(super) fn missing(path: &Path, particles: &Particles, name: &str) -> FileError {
+pub(in super::super) fn missing(path: &Path, particles: &Particles, name: &str) -> FileError {
     FileError::whole_file(path, unknown(particles, name))
 }

@@ -11,12 +11,12 @@ pub use arrows::{ArrowCentering, ArrowSizes, ArrowStyle, Arrows, VectorColumns};
 pub use categories::Category;
 pub use colors::{ColumnColors, ElementColors, Legend};
 use columns::SPEED;
-pub(super) use columns::{Column, ID, INDEX, unknown};
+pub(super) use columns::{Column, ID, INDEX, missing, nearest, numbers, unknown};
 pub use opacity::{GHOST, Opacity};
 pub use types::{TypeMaterial, TypeStyle};
 
 use super::NumberColumn;
-use super::select::Selection;
+use super::select::{Selection, expression};
 use super::{BondSource, Model, Particles, SharedNames};
 use crate::scene::FileError;
 use spherule_particles::internals::aliases;
@@ -31,7 +31,7 @@ pub enum Coloring {
     Usual,
     /// Colors of elements, even if the file has colors.
     Elements(ElementColors),
-    /// Colors by the numbers or texts of a column.
+    /// Colors by the numbers or texts of a column, or by an expression over columns.
     Column(ColumnColors),
 }
 
@@ -70,15 +70,7 @@ impl ParticleStyle {
     /// Returns the columns that this style needs, with their aliases, for
     /// [`Columns::wanted`](super::Columns::wanted).
     pub fn columns(&self) -> Vec<String> {
-        let mut columns = self.typed_columns();
-        if columns.iter().any(|name| name.eq_ignore_ascii_case(SPEED.0)) {
-            columns.extend(SPEED.1.map(str::to_owned));
-        }
-        for at in 0..columns.len() {
-            let others = aliases::of(&columns[at]).map(str::to_owned).collect::<Vec<_>>();
-            columns.extend(others);
-        }
-        columns
+        with_synonyms(self.typed_columns())
     }
 
     /// Returns the source of bonds, for [`ReadOptions::bonds`](super::ReadOptions::bonds).
@@ -101,13 +93,14 @@ impl ParticleStyle {
     fn typed_columns(&self) -> Vec<String> {
         let mut columns = self.select.as_ref().map_or_else(Vec::new, Selection::columns);
         if let Coloring::Column(colors) = &self.coloring {
-            columns.push(colors.column.clone());
+            columns.extend(expression::columns(&colors.column));
         }
         if let Some(Opacity::Column { name, .. }) = &self.opacity {
-            columns.push(name.clone());
+            columns.extend(expression::columns(name));
         }
         columns.extend(self.translucent.iter().flat_map(Selection::columns));
-        columns.extend(self.arrows.iter().flat_map(|arrows| arrows.columns.0.clone()));
+        let arrows = self.arrows.iter().flat_map(|arrows| &arrows.columns.0);
+        columns.extend(arrows.flat_map(|name| expression::columns(name)));
         if self.ids {
             columns.push(ID.to_owned());
         }
@@ -182,6 +175,18 @@ impl ParticleStyle {
     pub fn check_types(&self, path: &Path, names: &SharedNames) -> Result<(), FileError> {
         self.types.iter().try_for_each(|style| style.check_known(path, names.kinds()))
     }
+}
+
+/// Returns names of columns with those that the same quantities have in other programs, or that they are computed from.
+pub(super) fn with_synonyms(mut columns: Vec<String>) -> Vec<String> {
+    if columns.iter().any(|name| name.eq_ignore_ascii_case(SPEED.0)) {
+        columns.extend(SPEED.1.map(str::to_owned));
+    }
+    for at in 0..columns.len() {
+        let others = aliases::of(&columns[at]).map(str::to_owned).collect::<Vec<_>>();
+        columns.extend(others);
+    }
+    columns
 }
 
 /// Adds the columns of ids and indices, if they are asked for and missing, before rows are dropped.

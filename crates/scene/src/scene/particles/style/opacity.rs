@@ -1,6 +1,6 @@
 //! Opacity of particles: for all, for a selection, or by the numbers of a column.
 
-use super::columns::{Column, missing};
+use super::columns::numbers;
 use crate::scene::FileError;
 use crate::scene::particles::Particles;
 use crate::scene::particles::select::Selection;
@@ -22,7 +22,7 @@ pub enum Opacity {
     Number(f64),
     /// A column of numbers.
     Column {
-        /// Its name.
+        /// Its name, or an expression over columns.
         name: String,
         /// The numbers that become 0 and 1; those beyond are as these are.
         ends: [f64; 2],
@@ -32,7 +32,7 @@ pub enum Opacity {
 impl FromStr for Opacity {
     type Err = String;
 
-    /// Parses a number from 0 to 1, or the name of a column, perhaps with the values that become 0 and 1, as in
+    /// Parses a number from 0 to 1, or the name of a column or an expression, perhaps with the values that become 0 and 1, as in
     /// `occupancy` and `charge:-1,1`.
     fn from_str(text: &str) -> Result<Self, String> {
         if let Ok(number) = text.trim().parse::<f64>() {
@@ -46,7 +46,8 @@ impl FromStr for Opacity {
                 .filter(|ends| ends.iter().all(|end| end.is_finite()) && ends[0] != ends[1])
         };
         let (name, ends) = match text.rsplit_once(':') {
-            Some((name, range)) if range.contains(',') => {
+            // A colon in an expression is part of a name.
+            Some((name, range)) if range.contains(',') && !range.contains(')') => {
                 let fault = || format!("`{range}` is not two different numbers, as in charge:-1,1");
                 (name, ends(range).ok_or_else(fault)?)
             }
@@ -67,21 +68,12 @@ impl Opacity {
             Self::Number(number) => return Ok(vec![*number; particles.spheres.len()]),
             Self::Column { name, ends } => (name, *ends),
         };
-        match Column::find(particles, name) {
-            Some(Column::Numbers(numbers)) => {
-                let opacity = |number: &f64| {
-                    let share = ((number - low) / (high - low)).clamp(0.0, 1.0);
-                    // A particle without a value is not hidden.
-                    if share.is_nan() { 1.0 } else { (share * STEPS).round() / STEPS }
-                };
-                Ok(numbers.iter().map(opacity).collect())
-            }
-            Some(Column::Texts { .. }) => {
-                let message = format!("the column `{name}` has texts, but opacities are numbers");
-                Err(FileError::whole_file(path, message).with_help("name a column of numbers"))
-            }
-            None => Err(missing(path, particles, name)),
-        }
+        let opacity = |number: &f64| {
+            let share = ((number - low) / (high - low)).clamp(0.0, 1.0);
+            // A particle without a value is not hidden.
+            if share.is_nan() { 1.0 } else { (share * STEPS).round() / STEPS }
+        };
+        Ok(numbers(path, particles, name, "opacities")?.iter().map(opacity).collect())
     }
 }
 

@@ -466,3 +466,123 @@ fn models_without_bonds_say_how_to_get_them() {
     assert_eq!(element.element.map(Element::symbol), Some("O"));
     assert!("1:element=Xx".parse::<TypeStyle>().is_err());
 }
+
+const MOVING: &str = "x,y,z,vx,vy,vz,mass,my-own,kind\n0,0,0,3,4,0,2,5,a\n1,0,0,0,6,8,5,6,b\n\
+                      2,0,0,,0,1,4,7,a\n3,0,0,0,0,1,0,8,a\n";
+
+/// Returns the numbers of a column or an expression, or the faulty part and the message.
+fn values(content: &str, text: &str) -> Result<Vec<f64>, String> {
+    let style = ParticleStyle { ids: true, ..colored(by(text)) };
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("particles");
+    std::fs::write(&path, content).expect("a file");
+    let columns = Columns { wanted: style.columns(), ..Columns::default() };
+    let options = ReadOptions { columns, ..ReadOptions::default() };
+    let particles = read(&path, &options).expect("particles");
+    match numbers(&path, &particles, text, "values") {
+        Ok(numbers) => Ok(numbers.iter().map(|value| (value * 1e9).round() / 1e9).collect()),
+        Err(error) => Err(match error.place {
+            Some(place) => format!("{}: {}", &place.source_text[place.span], error.message),
+            None => format!("{} {}", error.message, error.help.unwrap_or_default()),
+        }),
+    }
+}
+
+#[test]
+fn columns_are_computed_by_expressions() {
+    let known = |text: &str| -> Vec<f64> {
+        let values = values(MOVING, text).unwrap_or_else(|fault| panic!("{text}: {fault}"));
+        values.into_iter().filter(|value| !value.is_nan()).collect()
+    };
+    for (text, expected) in [
+        ("norm(velocity)", &[5.0, 10.0, 1.0][..]),
+        ("norm(v)", &[5.0, 10.0, 1.0]),
+        ("speed", &[5.0, 10.0, 1.0]),
+        ("mass * speed^2 / 2", &[25.0, 250.0, 0.0]),
+        ("sqrt(vx*vx + vy^2 + vz**2)", &[5.0, 10.0, 1.0]),
+        ("my-own", &[5.0, 6.0, 7.0, 8.0]),
+        ("`my-own`", &[5.0, 6.0, 7.0, 8.0]),
+        ("-`my-own`", &[-5.0, -6.0, -7.0, -8.0]),
+        ("(mass)", &[2.0, 5.0, 4.0, 0.0]),
+        ("max(vx, 1)", &[3.0, 1.0, 1.0]),
+    ] {
+        assert_eq!(known(text), expected, "{text}");
+    }
+}
+
+#[test]
+fn errors_point_into_expressions() {
+    for (text, expected) in [
+        ("mass * speeed", "speeed: no column is named `speeed`"),
+        ("mass *", ": expected a number or a name here"),
+        ("sqrt(mass", "(: unclosed parenthesis"),
+        ("sqrt(mass) mass", "mass: expected an operator before this"),
+        ("mass * kind", "kind: the column `kind` holds texts: only columns of numbers"),
+        ("(mass > 3)", "(mass > 3): expected a number, but this is a condition"),
+        ("mass > 3", ">: expected an operator before this"),
+        ("sin(mass)", "sin: no function is named `sin`"),
+        ("kind", "the column `kind` has texts, but values are numbers"),
+        ("masss", "no column is named `masss`; did you mean `mass`?"),
+        ("no such", "no column is named `no such`; there are x, y, z"),
+        ("2 * 3", "no column is named `2 * 3`"),
+        ("my-oen", "my: no column is named `my`"),
+    ] {
+        let fault = values(MOVING, text).expect_err(text);
+        assert!(fault.starts_with(expected), "{text}: {fault}");
+    }
+    let error = apply(MOVING, &colored(by("my-oen"))).expect_err("no column");
+    assert!(error.help.is_some_and(|help| help.contains("did you mean `my-own`?")));
+}
+
+#[test]
+fn expressions_stand_wherever_columns_do() {
+    let at = |position: f64| Map::Viridis.at(position);
+    let (particles, legend) = apply(MOVING, &colored(by("norm(velocity) - 1"))).expect("colors");
+    let gray = srgb(0x80_80_80);
+    assert_eq!(particles.spheres.color, [at(4.0 / 9.0), at(1.0), gray, at(0.0)]);
+    assert_eq!(legend.expect("a legend").label, "norm(velocity) - 1");
+    assert!(particles.frame.warnings.iter().any(|text| text.contains("1 particle has no value")));
+    let faded = ParticleStyle { opacity: Some("mass/5:0,1".parse().unwrap()), ..typed(&[]) };
+    assert_eq!(opacities(MOVING, &faded), [0.4, 1.0, 0.8, 0.0]);
+    let faded = ParticleStyle { opacity: Some("min(mass, 2):0,2".parse().unwrap()), ..typed(&[]) };
+    assert_eq!(opacities(MOVING, &faded), [1.0, 1.0, 1.0, 0.0]);
+    let columns = "2*vx, max(vy, 5), vz - vz".parse().expect("columns");
+    let arrows = ArrowStyle { scale: Some(1.0), ..ArrowStyle::new(columns) };
+    let style = ParticleStyle { arrows: Some(arrows), ..ParticleStyle::default() };
+    let (particles, _) = apply(MOVING, &style).expect("arrows");
+    assert_eq!(
+        particles.arrows.vectors[..2],
+        [DVec3::new(6.0, 5.0, 0.0), DVec3::new(0.0, 6.0, 0.0)]
+    );
+}
+
+#[test]
+fn radii_follow_expressions() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("particles");
+    let radii = |content: &str, text: &str, options: ReadOptions| {
+        std::fs::write(&path, content).expect("a file");
+        let mut options = ReadOptions { radii: text.parse().expect("radii"), ..options };
+        crate::scene::particles::accept_radii_expression(&mut options);
+        read(&path, &options)
+    };
+    let found = |content: &str, text: &str, options| {
+        radii(content, text, options).expect("particles").spheres.radius
+    };
+    let usual = ReadOptions::default;
+    assert_eq!(found(DUMP, "column:sqrt(q/10)", usual()), [1.0, 10_f64.sqrt(), 10.0]);
+    assert_eq!(found(DUMP, "column:radius * 3", usual()), [1.5, 3.0, 6.0]);
+    assert_eq!(found(DUMP, "column:q", usual()), [10.0, 100.0, 1000.0]);
+    assert_eq!(found(DUMP, "column:index+1", usual()), [1.0, 2.0, 3.0]);
+    let scaled = ReadOptions { radius_scale: 0.5, scale: 2.0, ..usual() };
+    assert_eq!(found(DUMP, "column:2*radius", scaled), [1.0, 2.0, 4.0]);
+    // No radius is drawn where there is none.
+    let particles = radii(MOVING, "column:mass*speed", usual()).expect("particles");
+    assert_eq!(particles.spheres.radius, [10.0, 50.0]);
+    assert!(particles.frame.warnings.iter().any(|text| text.contains("2 of 4 rows were dropped")));
+    assert_eq!((particles.guessed_radius, particles.frame.len()), (None, 0));
+    let error = radii(DUMP, "column:0*q", usual()).expect_err("no sphere");
+    assert!(error.message.contains("none of its 3 rows is a sphere"), "{error}");
+    let error = radii(DUMP, "column:q*qq", usual()).expect_err("no column");
+    assert_eq!(error.place.map(|place| place.span), Some(2..4));
+}
