@@ -97,11 +97,11 @@ pub mod scene {
     pub use spherule_render::scene::{
         Anchor, Annotations, Axis, AxisTripod, Background, BodyBytes, Camera, ColorBar,
         ColorLegend, ConductorFresnel, Cones, Denoise, Ellipsoids, Environment, EnvironmentMap,
-        FileError, Filter, Footprint, Ground, Header, Identity, Insets, Integrator, InvalidSetting,
-        Label, Lens, Lettering, Light, LightChoice, Look, Material, NamedMaterial, Place, Pose,
-        Preset, Projection, Rgb, Roulette, SamplerKind, ScaleBar, Scene, Settings, Slice,
-        SliceMode, SlicePlane, Spheres, Sticks, Tone, Triangles, text_without_columns, write,
-        write_as,
+        FileError, Filter, Footprint, FramedSphere, Ground, Header, Identity, Insets, Integrator,
+        InvalidSetting, Label, Lens, Lettering, Light, LightChoice, Look, Material, NamedMaterial,
+        Place, Pose, Preset, Projection, Rgb, Roulette, SamplerKind, ScaleBar, Scene, Settings,
+        Slice, SliceMode, SlicePlane, Spheres, Sticks, Tone, Triangles, text_without_columns,
+        write, write_as,
     };
 
     /// Generators of spheres.
@@ -156,8 +156,8 @@ pub mod compose {
     #[doc(inline)]
     pub use spherule_render::compose::{
         AnnotationRequest, Axes, Bar, CameraRequest, CellRequest, Content, Fault, Focus, LabelText,
-        Labels, LensRequest, ROWS, Request, Sections, Shared, Staged, Subject, Template, Value,
-        change, choose, frame, light_ahead, place, stage,
+        Labels, LensRequest, LookAt, ROWS, Request, Sections, Shared, Staged, Subject, Template,
+        Value, change, choose, frame, light_ahead, place, stage, zoom,
     };
 }
 

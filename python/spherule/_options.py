@@ -66,7 +66,10 @@ if TYPE_CHECKING:
         types: Mapping[str, TypeStyle]
         preset: Preset
         background: Color
-        view: Side
+        view: Side | Sequence[float]
+        look_at: str | Sequence[float]
+        zoom: float
+        roll: float
         up: UpAxis
         wrap: bool
         replicate: tuple[int, int, int]
@@ -93,7 +96,7 @@ PARTICLES = frozenset("radius semi_axes orientation color kinds materials column
 #: Arguments that say how particles are drawn.
 STYLE = frozenset(
     "values radius_scale select colors color_by color_map color_range color_log color_bar label_of_values types model "
-    "bonds bond_radius opacity translucent arrows arrow_scale arrow_radius arrow_color arrow_center preset background view up wrap replicate show_cell slices slice_mode".split()
+    "bonds bond_radius opacity translucent arrows arrow_scale arrow_radius arrow_color arrow_center preset background view look_at zoom roll up wrap replicate show_cell slices slice_mode".split()
 )
 
 #: Sections of scene files; the color bar is one, too, if it is a dict.

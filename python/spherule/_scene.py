@@ -64,12 +64,17 @@ class Scene:
         preset: ``"figure"``, ``"chalk"``, ``"studio"``, ``"cloudy"``, ``"glossy"``, ``"depthcue"``, ``"outline"``,
             ``"ghost"`` or ``"x-ray"``.
         background: A color, ``"transparent"`` or ``"sky"``.
-        view: The side from which the camera sees everything: ``"auto"``, ``"iso"``, ``"x"``, ``"-x"`` and so on.
+        view: The direction from which the camera sees everything: ``"auto"``, ``"iso"``, ``"x"``, ``"-x"`` and so on;
+            azimuth and elevation in degrees, ``(30, 20)``: (0, 0) is from x if z is up, and (90, 0) from y, as in
+            matplotlib; or a vector, ``(1, 1, 0)``.
+        look_at: The particles that the camera frames, as for ``select``, or a point, ``(x, y, z)``, that it looks at.
+        zoom: A magnification: 2 is twice as large. ``roll`` turns the camera clockwise, in degrees.
+        camera: The section, or the scene file that the camera is taken from, as the viewer saves it.
         up: The direction of particles that is up.
         wrap, replicate, show_cell: Wrap particles into the cell; repeat it; draw its edges.
         slices: Planes that cut spheres away, as in ``["z > 50%"]``; ``slice_mode`` is ``"remove"``, ``"caps"`` or
             ``"hide"``.
-        render, camera, look, legend, axes, scale_bar, label, lettering, environment, ground, slice, light, material,
+        render, look, legend, axes, scale_bar, label, lettering, environment, ground, slice, light, material,
             sphere, stick, ellipsoid, cone, triangle, mesh, generate, file: Sections, as :mod:`spherule.sections` types
             them.
         triangles: (n, 3, 3) corners of triangles, such as the faces of a wall or of an isosurface; or a dict of these
@@ -100,6 +105,9 @@ class Scene:
         if isinstance(color_bar, Mapping):
             sections["color_bar"] = color_bar
             color_bar = None
+        camera = None
+        if "camera" in sections and not isinstance(sections["camera"], Mapping):
+            camera = _values.path("camera", sections.pop("camera"))
         if "background" in given:
             sections["look"] = {**sections.get("look", {}), "background": given["background"]}
         if first is not None:
@@ -115,7 +123,7 @@ class Scene:
                 {"text": text, "folder": os.getcwd(), "keys": keys, "triangles": triangles},
                 columns,
                 _style(given),
-                _view(given, color_bar),
+                _view(given, color_bar, camera),
             )
         )
 
@@ -390,15 +398,25 @@ def _optional(given: Mapping[str, Any], name: str, check: Callable[[str, Any], A
     return None if value is None else check(name, value)
 
 
-def _view(given: Mapping[str, Any], color_bar: Any) -> dict[str, Any]:
+def _numbers(name: str, value: Any) -> str:
+    """A text, or numbers as the program takes them: with commas between them."""
+    if isinstance(value, str):
+        return str(value)
+    return ",".join(repr(number) for number in _values.items(name, value, _values.number))
+
+
+def _view(given: Mapping[str, Any], color_bar: Any, camera: str | None) -> dict[str, Any]:
     if color_bar is not None and not isinstance(color_bar, str):
         color_bar = "bottom-right" if _values.flag("color_bar", color_bar) else None
     flags = {name: _values.flag(name, given.get(name, False)) for name in ("wrap", "show_cell")}
-    words = {name: _optional(given, name, _values.text) for name in ("preset", "view", "up", "slice_mode")}
+    words = {name: _optional(given, name, _values.text) for name in ("preset", "up", "slice_mode")}
+    words |= {name: _optional(given, name, _numbers) for name in ("view", "look_at")}
+    words["camera"] = camera
+    numbers = {name: _optional(given, name, _values.number) for name in ("zoom", "roll")}
     replicate = given.get("replicate")
     if replicate is not None:
         replicate = _values.items(
             "replicate", replicate, lambda name, copies: _values.integer(name, copies, 1, 2**32 - 1), 3
         )
     slices = _values.items("slices", given.get("slices", ()), _values.text)
-    return {**words, **flags, "replicate": replicate, "color_bar": color_bar, "slices": slices}
+    return {**words, **numbers, **flags, "replicate": replicate, "color_bar": color_bar, "slices": slices}

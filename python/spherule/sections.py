@@ -59,11 +59,14 @@ class Camera(TypedDict, total=False):
     fit: bool
     direction: Vector
     margin: float
+    center: Vector
+    radius: float
     up: Vector
     aperture: float
     focus: float
     near: float
     insets: Sequence[float]
+    zoom: float
 
 
 class Look(TypedDict, total=False):

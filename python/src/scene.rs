@@ -8,13 +8,14 @@ use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use spherule::color::{self, Rgb};
 use spherule::compose::{
-    self, AnnotationRequest, CameraRequest, CellRequest, Content, ROWS, Request, Subject, Value,
+    self, AnnotationRequest, CameraRequest, CellRequest, Content, LookAt, ROWS, Request, Subject,
+    Value,
 };
 use spherule::particles::{FileError, NumberColumn, ParticleFrame, ReadOptions};
-use spherule::scene::particles::{FirstFrame, of_frame_in};
+use spherule::scene::particles::{FirstFrame, ParticleStyle, of_frame_in};
 use spherule::scene::{
-    Anchor, Axis, EnvironmentMap, Preset, SliceMode, SlicePlane, Spheres, text_without_columns,
-    write,
+    Anchor, Axis, Camera, EnvironmentMap, Preset, SliceMode, SlicePlane, Spheres,
+    text_without_columns, write,
 };
 use spherule::world::WorldError;
 use std::collections::HashMap;
@@ -23,6 +24,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The name of particles from arrays, in messages.
 const ARRAYS: &str = "particles";
+
+/// Why particles cannot be looked at.
+const LOOK_AT: &str = "`look_at` needs particles for a selection; give a point, as in (1, 2, 3)";
 
 /// A scene that Python holds.
 #[pyclass(frozen, module = "spherule._spherule")]
@@ -75,6 +79,11 @@ struct Sections<'py> {
 struct ViewTable {
     preset: Option<String>,
     view: Option<String>,
+    look_at: Option<String>,
+    zoom: Option<f64>,
+    roll: Option<f64>,
+    /// A scene file that the camera is taken from.
+    camera: Option<PathBuf>,
     up: Option<String>,
     wrap: bool,
     replicate: Option<[u32; 3]>,
@@ -148,15 +157,17 @@ impl Scene {
         style: StyleTable,
         view: ViewTable,
     ) -> PyResult<Self> {
-        let mut request = view.request().map_err(|message| error(py, &message))?;
+        let mut request = view.request().map_err(|fault| fault.raise(py))?;
         let given = sections.parse().map_err(|fault| fault.raise(py))?;
         let made = match particles {
+            None if request.style.framed.is_some() => Err(LOOK_AT.to_owned().into()),
             None => complete(given, &request),
             Some(mut table) => {
                 let first_frame = table.first_frame.take();
                 let (frame, options) = table.frame(py)?;
                 let first_frame = first_frame.map(|first| first.first_frame(frame.format));
-                request.style = style.style(py, options.radius_scale)?;
+                let framed = request.style.framed.take();
+                request.style = ParticleStyle { framed, ..style.style(py, options.radius_scale)? };
                 let sections = compose::Sections { scene: given, keys: sections.keys };
                 let work = Work { frame, first_frame, options, request, sections };
                 // Copies and orientation of many particles take a while.
@@ -301,7 +312,7 @@ impl Sections<'_> {
 }
 
 impl ViewTable {
-    fn request(&self) -> Result<Request, String> {
+    fn request(&self) -> Result<Request, Fault> {
         fn word<T>(
             name: &str,
             word: Option<&String>,
@@ -323,7 +334,8 @@ impl ViewTable {
             text.parse::<SlicePlane>().map_err(|why| format!("slice \"{text}\": {why}"))
         });
         if copies.is_some_and(|copies| copies.contains(&0)) {
-            return Err("`replicate` must be three integers of at least 1, as in (2, 2, 1)".into());
+            let message = "`replicate` must be three integers of at least 1, as in (2, 2, 1)";
+            return Err(message.to_owned().into());
         }
         let bar = word(
             "color_bar",
@@ -332,10 +344,25 @@ impl ViewTable {
             &Anchor::ALL.map(|(name, _)| name),
         )?;
         let modes = SliceMode::ALL.map(|(name, _)| name);
-        Ok(Request {
+        let look_at = self.look_at.as_deref().map(str::parse).transpose();
+        let (framed, look_at) = match look_at.map_err(|why: String| format!("`look_at`: {why}"))? {
+            Some(LookAt::Selection(selection)) => (Some(selection), None),
+            Some(LookAt::Point(point)) => (None, Some(point)),
+            None => (None, None),
+        };
+        let zoom = self.zoom.map(compose::zoom).transpose();
+        if let Some(roll) = self.roll.filter(|roll| !roll.is_finite()) {
+            return Err(format!("`roll` is {roll}, but must be degrees").into());
+        }
+        let request = Request {
+            style: ParticleStyle { framed, ..ParticleStyle::default() },
             preset: word("preset", self.preset.as_ref(), preset, &presets)?,
             camera: CameraRequest {
+                own: self.camera.as_deref().map(Camera::load).transpose()?,
                 view: view.map_err(|why: String| format!("`view`: {why}"))?,
+                look_at,
+                zoom: zoom.map_err(|why| format!("`zoom`: {why}"))?,
+                roll: self.roll,
                 ..CameraRequest::default()
             },
             up: word("up", self.up.as_ref(), Axis::named, &axes)?,
@@ -346,7 +373,11 @@ impl ViewTable {
                 .unwrap_or_default(),
             keeps_rows: true,
             ..Request::default()
-        })
+        };
+        match request.contradiction() {
+            Some(name) => Err(format!("`camera` says all of the camera; remove `{name}`").into()),
+            None => Ok(request),
+        }
     }
 }
 

@@ -44,6 +44,57 @@ fn cells_wrap_repeat_and_are_drawn() {
 }
 
 #[test]
+fn cameras_are_free() {
+    let folder = folder();
+    let of =
+        |args: &str| picture(&folder, "free.png", &args.split_whitespace().collect::<Vec<_>>());
+    // Vectors and angles are sides, too.
+    for (side, others) in [("x", ["1,0,0", "0,0"]), ("-y", ["0,-2,0", "-90,0"])] {
+        let expected = of(&format!("--view {side}"));
+        for other in others {
+            assert_eq!(of(&format!("--view {other}")), expected, "{other}");
+        }
+    }
+    let dark = |image: &Image| {
+        let is_dark = |pixel: &&[f32; 3]| pixel[1] < 0.8;
+        image.pixels.iter().filter(is_dark).count()
+    };
+    let plain = dark(&of("--view z --select index==0 --margin 0.6"));
+    let zoomed = dark(&of("--view z --select index==0 --margin 0.6 --zoom 2"));
+    assert!((3 * plain..5 * plain).contains(&zoomed), "{plain} {zoomed}");
+    // A round particle alone looks the same wherever it is, and rolled.
+    let alone = dark(&of("--view z --look-at index==1"));
+    assert!(alone > dark(&of("--view z")));
+    assert_ne!(of("--view z"), of("--view z --roll 90"));
+    assert_ne!(of("--view z"), of("--view z --look-at 6,2,2"));
+    folder.write(
+        "camera.toml",
+        "[camera]\neye = [3, 2, 30]\ntarget = [3, 1.5, 1]\nfov = 20\n[[file]]\npath = \"none.csv\"\n",
+    );
+    let taken = of("--camera camera.toml");
+    assert_ne!(taken, of(""));
+    assert_eq!(taken, of("--camera camera.toml --aperture 0"));
+    folder.write("none.toml", "title = \"none\"\n");
+    for (args, name) in [
+        ("--camera camera.toml --view x", "--view"),
+        ("--camera camera.toml --look-at index==0", "--look-at"),
+        ("--camera camera.toml --zoom 2", "--zoom"),
+        ("--camera none.toml", "[camera]"),
+        ("--camera gone.toml", "gone.toml"),
+        ("--look-at index==7", "is looked at"),
+        ("--look-at nme==7", "nme"),
+        ("--zoom 0", "1000"),
+        ("--view 0,91", "elevation"),
+        ("--roll 3 --turntable 2", "--turntable"),
+    ] {
+        let line = format!("a.xyz --radii 0.3 -o no.png {args}");
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let message = text(&folder.run(&words).stderr);
+        assert!(message.contains(name), "{args}: {message}");
+    }
+}
+
+#[test]
 fn sides_and_projections_frame_everything() {
     let folder = folder();
     let mut pictures = Vec::new();

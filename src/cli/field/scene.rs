@@ -4,8 +4,8 @@ use glam::DVec3;
 use spherule_render::elementary::tan;
 use spherule_render::scene::generate::{Field, GenerateError, Generator, Group, default_scene};
 use spherule_render::scene::{
-    Camera, Environment, EnvironmentMap, Insets, Lens, Material, NamedMaterial, Pose, Projection,
-    Rgb, Scene,
+    Camera, Environment, EnvironmentMap, Lens, Material, NamedMaterial, Pose, Projection, Rgb,
+    Scene,
 };
 
 /// Returns the generator's spheres with the lights of the default scene.
@@ -68,8 +68,7 @@ fn weekend(group: Group, seed: u64) -> Scene {
             pose: Pose::LookAt { eye: DVec3::new(13.0, 2.0, 3.0), target: DVec3::ZERO },
             up: DVec3::Y,
             lens: Some(Lens { aperture, focus: Some(10.0) }),
-            near: 0.0,
-            insets: Insets::default(),
+            ..Camera::default()
         },
         ..scene
     }

@@ -10,6 +10,9 @@ pub(in crate::cli) fn files(args: &RenderArgs) -> Files {
     if let Some(scene) = &args.scene {
         files.reads_particles(scene, &args.particles);
     }
+    if let Some(camera) = args.views.camera_file() {
+        files.reads("--camera", camera);
+    }
     let many = args.is_sequence();
     let part = args.part.resolved().is_some() && !many;
     if let Some(prepared) = &args.prepare {

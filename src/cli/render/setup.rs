@@ -156,9 +156,10 @@ impl<'a> RenderSetup<'a> {
         let (part, deal) = if args.is_sequence() { (None, part) } else { (part, None) };
         let mut looks = args.looks.looks(args.particles.options().radius_scale);
         looks.ids = matches!(args.views.lens().focus, Some(Focus::Particle(_)));
+        looks.framed = args.views.framed();
         Ok(Self {
             source: with_columns(source, &looks)?,
-            request: request(args, looks, part.is_some()),
+            request: request(args, looks, part.is_some())?,
             particles: &args.particles,
             looks: &args.looks,
             color_bar: args.looks.color_bar.as_ref(),
@@ -273,7 +274,7 @@ impl<'a> RenderSetup<'a> {
 
 /// Returns what the options ask of the scene; of a part of an image, the settings of its display, too, since the image
 /// is written elsewhere.
-fn request(args: &RenderArgs, style: ParticleStyle, part: bool) -> Request {
+fn request(args: &RenderArgs, style: ParticleStyle, part: bool) -> Result<Request, Failure> {
     let bar = match &args.looks.color_bar {
         Some(BarPlace::Inside(position)) => Some(*position),
         Some(BarPlace::File(..)) | None => None,
@@ -282,7 +283,7 @@ fn request(args: &RenderArgs, style: ParticleStyle, part: bool) -> Request {
     if part {
         settings.extend(args.encoding.display.values());
     }
-    Request {
+    let request = Request {
         style,
         cell: args.views.cell(),
         up: args.views.up(),
@@ -292,9 +293,17 @@ fn request(args: &RenderArgs, style: ParticleStyle, part: bool) -> Request {
         slice_mode: args.slices.mode(),
         annotations: args.annotations.request(bar),
         settings,
-        camera: args.views.camera(),
+        camera: args.views.camera()?,
         lens: args.views.lens(),
         ..Request::default()
+    };
+    match request.contradiction() {
+        Some(name) => {
+            let name = name.replace('_', "-");
+            let message = format!("--camera says all of the camera; remove --{name}");
+            Err(Failure::usage("render", message))
+        }
+        None => Ok(request),
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::{Fault, Request, Sections, Shared, Staged};
 use crate::overlay::annotations;
-use crate::scene::particles::{Orientation, Particles};
-use crate::scene::{Camera, FileError, Insets, Lens, Pose, Projection, Scene};
+use crate::scene::particles::{Orientation, Particles, Selection};
+use crate::scene::{Camera, FileError, FramedSphere, Insets, Lens, Pose, Projection, Scene};
 use crate::world::framing::view::{self, View};
 use crate::world::{WorldError, framing};
 use glam::DVec3;
@@ -11,16 +11,62 @@ use std::path::Path;
 use std::str::FromStr;
 
 /// The view that is asked for.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct CameraRequest {
-    /// The side.
+    /// A camera that is used as it is, with its lens.
+    pub own: Option<Camera>,
+    /// The direction.
     pub view: Option<View>,
+    /// The point that the camera looks at; particles that it frames are [`ParticleStyle::framed`].
+    pub look_at: Option<DVec3>,
+    /// Magnification, within [`Camera::ZOOMS`].
+    pub zoom: Option<f64>,
+    /// Angle in degrees by which the camera is rolled clockwise.
+    pub roll: Option<f64>,
     /// The projection; one of the scene's kind leaves the scene's.
     pub projection: Option<Projection>,
     /// Margin around the scene as a fraction of the image, 0 to 0.9.
     pub margin: Option<f64>,
     /// True if the image is one of a turntable.
     pub turns: bool,
+}
+
+/// What the camera looks at: particles, or a point.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LookAt {
+    /// These particles.
+    Selection(Selection),
+    /// This point.
+    Point(DVec3),
+}
+
+impl FromStr for LookAt {
+    type Err = String;
+
+    /// Parses three numbers, or else a selection.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number =
+            |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite());
+        let numbers: Option<Vec<f64>> = text.split(',').map(number).collect();
+        match numbers.as_deref() {
+            Some(&[x, y, z]) => Ok(Self::Point(DVec3::new(x, y, z))),
+            Some(_) => Err("give a point as x,y,z, or a selection, as in 'resname LIG'".to_owned()),
+            None => {
+                let selection = text.parse::<Selection>().map_err(|fault| fault.to_string());
+                selection.map(Self::Selection)
+            }
+        }
+    }
+}
+
+/// Returns the magnification.
+///
+/// # Errors
+/// It is out of range.
+pub fn zoom(factor: f64) -> Result<f64, String> {
+    let (least, most) = (*Camera::ZOOMS.start(), *Camera::ZOOMS.end());
+    let message = || format!("give a factor from {least} to {most}, as in 2 for twice as large");
+    Camera::ZOOMS.contains(&factor).then_some(factor).ok_or_else(message)
 }
 
 /// The lens that is asked for.
@@ -84,27 +130,58 @@ pub(super) fn point_in_focus(
 /// [`Fault::Margin`].
 pub fn choose(request: &Request, staged: &mut Staged) -> Result<(), Fault> {
     let Staged { scene, orientation, normals, .. } = staged;
-    if let Some(sections) = &request.sections {
-        sections.set_camera(&mut scene.camera);
-        if sections.places_camera() {
-            return Ok(());
-        }
+    if let Some(own) = &request.camera.own {
+        scene.camera = own.clone();
+        return Ok(());
     }
-    let CameraRequest { view, projection, margin, .. } = request.camera;
-    if let Some(projection) = projection {
-        let same =
-            std::mem::discriminant(&projection) == std::mem::discriminant(&scene.camera.projection);
-        if !same {
+    let CameraRequest { view, projection, margin, zoom, roll, .. } = request.camera;
+    let sections = request.sections.as_ref();
+    if let Some(sections) = sections {
+        sections.set_camera(&mut scene.camera);
+    }
+    if !sections.is_some_and(Sections::places_camera) {
+        let same = |projection: &Projection| {
+            std::mem::discriminant(projection) == std::mem::discriminant(&scene.camera.projection)
+        };
+        if let Some(projection) = projection.filter(|projection| !same(projection)) {
             scene.camera.projection = projection;
         }
+        view::choose(scene, view, orientation.as_ref(), normals);
     }
-    view::choose(scene, view, orientation.as_ref(), normals);
+    if scene.camera.framed.is_some() {
+        fit(&mut scene.camera);
+    }
     match (&mut scene.camera.pose, margin) {
         (Pose::Fit { margin, .. }, Some(asked)) => *margin = asked,
         (Pose::LookAt { .. }, Some(_)) => return Err(Fault::Margin),
         (_, None) => (),
     }
+    scene.camera.zoom *= zoom.unwrap_or(1.0);
+    if let Some(degrees) = roll {
+        framing::roll(&mut scene.camera, degrees);
+    }
     Ok(())
+}
+
+/// Fits a camera that is placed, with the same direction.
+fn fit(camera: &mut Camera) {
+    if let Pose::LookAt { eye, target } = camera.pose {
+        camera.pose = Pose::Fit { direction: target - eye, margin: Camera::FIT_MARGIN };
+        camera.near = 0.0;
+        if let Projection::Orthographic { height } = &mut camera.projection {
+            *height = None;
+        }
+    }
+}
+
+/// Returns the sphere that the camera frames instead of all bodies, if something is looked at: about a point, with all
+/// bodies as large as in a turntable.
+pub(super) fn framed(request: &Request, scene: &Scene) -> Option<FramedSphere> {
+    let of_point = |center: DVec3| {
+        let (_, radius) = framing::bounding_sphere(scene, &[]);
+        (radius > 0.0).then_some(FramedSphere { center, radius })
+    };
+    request.camera.look_at.and_then(of_point).or(scene.camera.framed)
 }
 
 /// Points that must be in view besides bodies: the corners of a cell that is drawn.
@@ -136,7 +213,14 @@ pub fn frame(scene: &mut Scene, turns: bool, angle: Option<f64>) -> Result<(), W
 /// Returns the direction that is up in a scene whose camera is chosen: that of the ground. In a view from above it is
 /// not that of the image.
 pub fn vertical(request: &Request, camera: &Camera, orientation: Option<&Orientation>) -> DVec3 {
-    view::vertical(request.camera.view, camera, orientation)
+    let asked = &request.camera;
+    if let (Some(_), Some(orientation)) = (&asked.own, orientation) {
+        return orientation.up.vector();
+    }
+    let Some(degrees) = asked.roll else { return view::vertical(asked.view, camera, orientation) };
+    let mut upright = camera.clone();
+    framing::roll(&mut upright, -degrees);
+    view::vertical(asked.view, &upright, orientation)
 }
 
 /// Lights a scene whose camera is placed as its preset does, or as the sections say.
@@ -243,6 +327,67 @@ mod tests {
         for text in ["", "id:", "id:a", "0", "-1", "inf", "nan", "12:id"] {
             assert!(text.parse::<Focus>().is_err(), "{text}");
         }
+    }
+
+    #[test]
+    fn points_and_selections_are_told_apart() {
+        assert_eq!("1,-2.5, 3e2".parse(), Ok(LookAt::Point(DVec3::new(1.0, -2.5, 300.0))));
+        assert!(matches!("resname LIG".parse(), Ok(LookAt::Selection(_))));
+        assert!(matches!("x > 1 and y < 2".parse(), Ok(LookAt::Selection(_))));
+        for text in ["1,2", "1", "1,2,3,4", "1,2,inf", "", "x >"] {
+            assert!(text.parse::<LookAt>().is_err(), "{text}");
+        }
+    }
+
+    /// Four spheres in a row, staged with a camera that is asked for.
+    fn chosen(camera: CameraRequest) -> (Request, Staged) {
+        let mut scene = Scene::default();
+        for x in 0..4 {
+            scene.spheres.push(DVec3::X * f64::from(x), 0.5, 0, Rgb::ONE);
+        }
+        let request = Request { camera, ..Request::default() };
+        let subject = crate::compose::Subject {
+            path: Path::new("a.toml"),
+            title: "",
+            frame: &crate::compose::Value::Missing(""),
+        };
+        let content = crate::compose::Content::Scene(Box::new(scene));
+        let mut staged = crate::compose::stage(&request, &subject, content, None).expect("a scene");
+        place(&request, &mut staged, None, None).expect("a camera");
+        framing::include_points(&mut staged.scene, &[]).expect("spheres");
+        (request, staged)
+    }
+
+    #[test]
+    fn points_that_are_looked_at_are_in_the_middle() {
+        let view = "30,20".parse().ok();
+        let point = DVec3::new(3.0, 0.5, 0.0);
+        let (_, staged) = chosen(CameraRequest { view, look_at: Some(point), ..<_>::default() });
+        let Pose::LookAt { eye, target } = staged.scene.camera.pose else { panic!("it is placed") };
+        let aside = (point - eye).normalize().cross((target - eye).normalize()).length();
+        assert!(aside < 1e-12, "{aside}");
+    }
+
+    #[test]
+    fn lights_stay_upright_if_the_camera_is_rolled() {
+        let view = "30,20".parse().ok();
+        let (request, staged) = chosen(CameraRequest { view, roll: Some(40.0), ..<_>::default() });
+        let camera = &staged.scene.camera;
+        assert!(camera.up.distance(DVec3::Z) > 0.1);
+        assert!(vertical(&request, camera, None).distance(DVec3::Z) < 1e-12);
+    }
+
+    #[test]
+    fn own_cameras_are_used_as_they_are_and_alone() {
+        let pose = Pose::LookAt { eye: DVec3::new(9.0, 8.0, 7.0), target: DVec3::X };
+        let own = Camera { pose, near: 0.5, up: DVec3::Z, ..Camera::default() };
+        let asked = CameraRequest { own: Some(own.clone()), ..<_>::default() };
+        let (request, staged) = chosen(asked.clone());
+        assert_eq!(staged.scene.camera, own);
+        assert_eq!(request.contradiction(), None);
+        let zoomed = CameraRequest { zoom: Some(2.0), ..asked };
+        let request = Request { camera: zoomed, ..Request::default() };
+        assert_eq!(request.contradiction(), Some("zoom"));
     }
 
     #[test]

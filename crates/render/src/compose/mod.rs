@@ -20,8 +20,8 @@ pub use self::annotations::{
     AnnotationRequest, Axes, Bar, LabelText, ink, notes, position, text_size,
 };
 pub use self::camera::{
-    CameraRequest, Focus, LensRequest, choose, corners, frame, leave_room, light, light_ahead,
-    place, vertical,
+    CameraRequest, Focus, LensRequest, LookAt, choose, corners, frame, leave_room, light,
+    light_ahead, place, vertical, zoom,
 };
 pub use self::sections::{Sections, change};
 pub use self::template::{Template, Value};
@@ -211,6 +211,21 @@ impl From<FileError> for Fault {
 }
 
 impl Request {
+    /// Returns the name of what contradicts a camera that is used as it is.
+    pub fn contradiction(&self) -> Option<&'static str> {
+        let camera = &self.camera;
+        camera.own.as_ref()?;
+        let given = [
+            ("view", camera.view.is_some()),
+            ("look_at", camera.look_at.is_some() || self.style.framed.is_some()),
+            ("zoom", camera.zoom.is_some()),
+            ("roll", camera.roll.is_some()),
+            ("projection", camera.projection.is_some()),
+            ("margin", camera.margin.is_some()),
+        ];
+        given.into_iter().find(|(_, is_given)| *is_given).map(|(name, _)| name)
+    }
+
     /// Returns the orientation of particles, with the direction that is asked for.
     pub fn orientation(&self, particles: &Particles) -> Orientation {
         let of_first = particles.first_frame.as_ref().map(|first| first.orientation);
@@ -247,6 +262,7 @@ pub fn stage(
     annotations::add(request, subject, &mut staged.scene, staged.legend.as_ref(), &facts)?;
     staged.categories = facts.categories;
     let scene = &mut staged.scene;
+    scene.camera.framed = camera::framed(request, scene);
     scene.look.background = request.background.unwrap_or(scene.look.background);
     if let Some(sections) = &request.sections {
         sections.set_look(&mut scene.look);
@@ -279,6 +295,7 @@ fn of_particles(
     repeat(request.cell, path, &mut particles)?;
     let cell = particles.frame.cell;
     let focus = camera::point_in_focus(request, path, &particles)?;
+    let framed = particles.framed(path, &request.style)?;
     let mut rows = take_rows(&mut particles);
     let ellipsoid_rows = rows.as_mut().map(|rows| take_ellipsoids(rows, &particles.frame.shapes));
     let facts = Facts::of(request, &particles);
@@ -293,8 +310,10 @@ fn of_particles(
         labels.texts = std::mem::take(&mut particles.frame.texts);
     }
     let preset = request.preset.unwrap_or_default();
+    let mut scene = preset.scene(particles, title, &orientation);
+    scene.camera.framed = framed;
     let staged = Staged {
-        scene: preset.scene(particles, title, &orientation),
+        scene,
         legend,
         orientation: Some(orientation),
         categories: None,

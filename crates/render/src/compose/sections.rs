@@ -79,6 +79,12 @@ impl Sections {
         if has(&["near"]) {
             camera.near = given.near;
         }
+        if has(&["zoom"]) {
+            camera.zoom = given.zoom;
+        }
+        if has(&["center", "radius"]) {
+            camera.framed = given.framed;
+        }
         if has(&["insets"]) {
             camera.insets = given.insets;
         }

@@ -1,7 +1,9 @@
 //! Cameras: projection, pose and lens.
 
 use super::Axis;
+use crate::elementary::{atan, tan};
 use glam::DVec3;
+use std::ops::RangeInclusive;
 
 /// A camera.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +21,19 @@ pub struct Camera {
     pub near: f64,
     /// Parts of the picture that a fitted camera leaves free, besides its margin.
     pub insets: Insets,
+    /// Magnification about the middle of the picture, or of what a fitted camera frames; 1 is none.
+    pub zoom: f64,
+    /// The sphere that a fitted camera frames, instead of all bodies.
+    pub framed: Option<FramedSphere>,
+}
+
+/// A sphere that a camera frames.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FramedSphere {
+    /// Its center.
+    pub center: DVec3,
+    /// Its radius, more than 0.
+    pub radius: f64,
 }
 
 /// Fractions of a picture at its edges: of the width at the left and the right, of the height at the
@@ -79,6 +94,20 @@ pub struct Lens {
     pub focus: Option<f64>,
 }
 
+impl FramedSphere {
+    /// Returns the sphere about the middle of the bounds of spheres, each a center and a radius, that contains all of them;
+    /// `None` without any.
+    pub fn around<I: Iterator<Item = (DVec3, f64)>>(spheres: impl Fn() -> I) -> Option<Self> {
+        let low = spheres().fold(DVec3::INFINITY, |low, (center, radius)| low.min(center - radius));
+        let high =
+            spheres().fold(DVec3::NEG_INFINITY, |high, (center, radius)| high.max(center + radius));
+        let center = (low + high) / 2.0;
+        let reach = spheres().map(|(own, radius)| own.distance(center) + radius);
+        let radius = reach.fold(0.0, f64::max);
+        (radius > 0.0).then_some(Self { center, radius })
+    }
+}
+
 impl Insets {
     /// Returns the left, the right, the bottom and the top inset.
     pub fn to_array(self) -> [f64; 4] {
@@ -96,6 +125,24 @@ impl Camera {
     /// Default projection for particle files: distant objects are hardly smaller than near ones.
     pub const LONG_LENS: Projection = Projection::Perspective { fov: Self::LONG_FOV };
 
+    /// Range of [`Camera::zoom`].
+    pub const ZOOMS: RangeInclusive<f64> = 0.01..=1000.0;
+
+    /// Replaces the zoom by a narrower field of view, or a lower height of a parallel projection that has one.
+    pub fn fold_zoom(&mut self) {
+        if self.zoom == 1.0 {
+            return;
+        }
+        match &mut self.projection {
+            Projection::Perspective { fov } => {
+                *fov = 2.0 * atan(tan(fov.to_radians() / 2.0) / self.zoom).to_degrees();
+            }
+            Projection::Orthographic { height: Some(height) } => *height /= self.zoom,
+            Projection::Orthographic { height: None } => return,
+        }
+        self.zoom = 1.0;
+    }
+
     /// Returns the default view direction with this direction up: [`Camera::FIT_DIRECTION`] if it is y.
     pub fn fit_direction(up: Axis) -> DVec3 {
         let ([right, toward], DVec3 { x, y, z }) = (up.front(), Self::FIT_DIRECTION);
@@ -112,6 +159,8 @@ impl Default for Camera {
             lens: None,
             near: 0.0,
             insets: Insets::default(),
+            zoom: 1.0,
+            framed: None,
         }
     }
 }

@@ -34,7 +34,7 @@ pub use axis::Axis;
 pub use bodies::{
     BodyBytes, BodyColumns, Cones, Ellipsoids, Hull, PlacedBodies, Sticks, Triangles,
 };
-pub use camera::{Camera, Insets, Lens, Pose, Projection};
+pub use camera::{Camera, FramedSphere, Insets, Lens, Pose, Projection};
 pub use file::included_files;
 pub use footprint::{ColorColumn, Footprint};
 pub use identity::Identity;

@@ -86,6 +86,13 @@ pub(super) fn pose(scene: &Scene) -> Result<Placement, WorldError> {
     Err(camera_error(placement.eye, "its distances overflow; scale the scene down"))
 }
 
+/// Returns the spheres that a fitted camera frames: its own, or those that hold all bodies.
+pub(super) fn targets(scene: &Scene) -> impl Iterator<Item = (DVec3, f64)> {
+    let own = scene.camera.framed.map(|sphere| (sphere.center, sphere.radius));
+    let all = own.is_none().then(|| scene.framed());
+    own.into_iter().chain(all.into_iter().flatten())
+}
+
 /// Returns whether there is nothing to frame.
 fn is_empty(scene: &Scene) -> bool {
     scene.framed().next().is_none()
@@ -108,7 +115,7 @@ fn look_at(scene: &Scene, eye: DVec3, target: DVec3) -> Result<Placement, WorldE
         camera_error(eye, "`eye` and `target` are the same point; move one of them")
     })?;
     let distance = (target - eye).dot(axes.forward);
-    let aspect = aspect(scene);
+    let (aspect, zoom) = (aspect(scene), scene.camera.zoom);
     let placed = |half_height: f64, reach: f64| Placement {
         eye,
         axes,
@@ -118,7 +125,7 @@ fn look_at(scene: &Scene, eye: DVec3, target: DVec3) -> Result<Placement, WorldE
         reach: reach + lens_radius(scene) + scene.camera.near,
     };
     Ok(match scene.camera.projection {
-        Projection::Perspective { fov } => placed(tan(fov.to_radians() / 2.0), 0.0),
+        Projection::Perspective { fov } => placed(tan(fov.to_radians() / 2.0) / zoom, 0.0),
         Projection::Orthographic { height } => {
             let half = match height {
                 Some(height) => height / 2.0,
@@ -131,6 +138,7 @@ fn look_at(scene: &Scene, eye: DVec3, target: DVec3) -> Result<Placement, WorldE
                     reach.y.max(reach.x / aspect)
                 }
             };
+            let half = half / zoom;
             placed(half, half * (1.0 + aspect))
         }
     })
@@ -143,15 +151,16 @@ fn fit(scene: &Scene, direction: DVec3, margin: f64) -> Result<Placement, WorldE
     let axes = Axes::new(direction, scene.camera.up)
         .ok_or_else(|| camera_error(DVec3::ZERO, "its `direction` is zero; give it a length"))?;
     let extent = ViewBox::of(scene, &axes);
+    let zoom = scene.camera.zoom;
     let window = Window::of(scene.camera.insets, margin).ok_or_else(|| {
         camera_error(DVec3::ZERO, "its margin and insets leave no room; make them smaller")
     })?;
-    let aspect = aspect(scene);
+    let (window, aspect) = (window.zoomed(zoom), aspect(scene));
     let lens = lens_radius(scene) + scene.camera.near;
     let middle = (extent.low + extent.high) / 2.0;
     Ok(match scene.camera.projection {
         Projection::Perspective { fov } => {
-            let half_height = tan(fov.to_radians() / 2.0);
+            let half_height = tan(fov.to_radians() / 2.0) / zoom;
             let half_width = half_height * aspect;
             let at = nearest_eye(scene, &axes, &Sides::new(&window, half_width, half_height));
             let eye = axes.point(at);
@@ -162,7 +171,9 @@ fn fit(scene: &Scene, direction: DVec3, margin: f64) -> Result<Placement, WorldE
             let size = (extent.high - extent.low) / 2.0;
             let used = (window.high - window.low) / 2.0;
             let half_height = height
-                .map_or((size.y / used.y).max(size.x / aspect / used.x), |height| height / 2.0);
+                .map_or((size.y / used.y).max(size.x / aspect / used.x), |height| {
+                    height / 2.0 / zoom
+                });
             let depth = size.z.max(half_height);
             let shift = (window.low + window.high) / 2.0 * half_height;
             let (x, y) = (middle.x - shift.x * aspect, middle.y - shift.y);
@@ -193,6 +204,16 @@ impl Window {
         let high = used - DVec2::new(insets.right, insets.top) * 2.0;
         (high - low).cmpgt(DVec2::ZERO).all().then_some(Self { low, high })
     }
+
+    /// Magnifies the part about its middle, for a picture whose angles are as much smaller: the camera stays where it is,
+    /// and the picture shows less.
+    fn zoomed(self, zoom: f64) -> Self {
+        if zoom == 1.0 {
+            return self;
+        }
+        let (middle, half) = ((self.low + self.high) / 2.0, (self.high - self.low) / 2.0);
+        Self { low: middle - half * zoom, high: middle + half * zoom }
+    }
 }
 
 /// Bounds of the spheres along the picture's axes.
@@ -204,7 +225,7 @@ struct ViewBox {
 impl ViewBox {
     fn of(scene: &Scene, axes: &Axes) -> Self {
         let mut bounds = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
-        for (center, radius) in scene.framed() {
+        for (center, radius) in targets(scene) {
             let center = axes.coordinates(center);
             bounds.low = bounds.low.min(center - radius);
             bounds.high = bounds.high.max(center + radius);
@@ -221,7 +242,7 @@ impl ViewBox {
 /// give its coordinate, and each pair gives how far forward it may go.
 fn nearest_eye(scene: &Scene, axes: &Axes, sides: &Sides) -> DVec3 {
     let mut slack = [f64::INFINITY; 4];
-    for (center, radius) in scene.framed() {
+    for (center, radius) in targets(scene) {
         let planes = sides.slack(axes.coordinates(center), radius);
         for (slack, plane) in slack.iter_mut().zip(planes) {
             *slack = slack.min(plane);
@@ -305,17 +326,21 @@ pub(super) struct Limits {
 }
 
 impl Limits {
-    /// Creates the limits for the camera of a scene; `None` if the camera is not fitted, has no
-    /// direction or no room.
-    pub(super) fn new(scene: &Scene) -> Option<Self> {
-        let Pose::Fit { direction, margin } = scene.camera.pose else { return None };
+    /// Creates the limits for the camera of a scene in which a direction is up; `None` if the camera has no direction or no
+    /// room.
+    pub(super) fn new(scene: &Scene, vertical: DVec3) -> Option<Self> {
+        let (direction, margin) = match scene.camera.pose {
+            Pose::Fit { direction, margin } => (direction, margin),
+            Pose::LookAt { eye, target } => (target - eye, 0.0),
+        };
+        let zoom = scene.camera.zoom;
         let tangent = match scene.camera.projection {
-            Projection::Perspective { fov } => tan(fov.to_radians() / 2.0),
+            Projection::Perspective { fov } => tan(fov.to_radians() / 2.0) / zoom,
             Projection::Orthographic { .. } => 1.0,
         };
-        let window = Window::of(scene.camera.insets, margin)?;
+        let window = Window::of(scene.camera.insets, margin)?.zoomed(zoom);
         let sides = Sides::new(&window, tangent * aspect(scene), tangent);
-        let vertical = scene.camera.up.normalize_or(DVec3::Y);
+        let vertical = vertical.normalize_or(DVec3::Y);
         Some(Self { axes: Axes::new(direction, scene.camera.up)?, sides, vertical })
     }
 
@@ -334,7 +359,7 @@ impl Limits {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Camera, Rgb, Spheres};
+    use crate::scene::{Camera, FramedSphere, Rgb, Spheres};
 
     fn spheres() -> Spheres {
         let mut spheres = Spheres::default();
@@ -413,6 +438,57 @@ mod tests {
         }
         scene.camera.insets = Insets { left: 0.5, right: 0.5, ..Insets::default() };
         assert!(matches!(pose(&scene), Err(WorldError::Camera { .. })));
+    }
+
+    #[test]
+    fn zooms_magnify_about_the_middle_of_what_is_framed() {
+        let insets = Insets { left: 0.3, right: 0.0, bottom: 0.1, top: 0.05 };
+        let parallel = Projection::Orthographic { height: None };
+        let central = Projection::Perspective { fov: 50.0 };
+        for (projection, insets) in
+            [(central, Insets::default()), (parallel, Insets::default()), (parallel, insets)]
+        {
+            let mut scene = Scene { spheres: spheres(), ..Scene::default() };
+            let pose = Pose::Fit { direction: DVec3::new(0.3, -0.5, -1.0), margin: 0.1 };
+            (scene.camera.projection, scene.camera.pose) = (projection, pose);
+            scene.camera.insets = insets;
+            let before = super::pose(&scene).unwrap();
+            let (low, high) = outline(&scene, &before);
+            let middle = DVec2::new(insets.left - insets.right, insets.bottom - insets.top);
+            for zoom in [2.0, 0.4, 30.0] {
+                let mut zoomed = scene.clone();
+                zoomed.camera.zoom = zoom;
+                let placed = super::pose(&zoomed).unwrap();
+                let found = outline(&zoomed, &placed);
+                let expected = [low, high].map(|end| middle + (end - middle) * zoom);
+                let error = (found.0 - expected[0]).abs().max((found.1 - expected[1]).abs());
+                assert!(error.max_element() < 1e-9 * zoom, "{projection:?} {zoom}: {error}");
+                if insets == Insets::default() {
+                    assert!(placed.eye.distance(before.eye) < 1e-9 || projection == parallel);
+                }
+                // A placed camera is the same with a narrower field of view.
+                zoomed.camera.pose =
+                    Pose::LookAt { eye: placed.eye, target: placed.eye + placed.axes.forward };
+                if let Projection::Orthographic { height } = &mut zoomed.camera.projection {
+                    *height = Some(2.0 * before.half_height);
+                }
+                let of_zoom = super::pose(&zoomed).unwrap().half_height;
+                zoomed.camera.fold_zoom();
+                let folded = super::pose(&zoomed).unwrap().half_height;
+                assert!((folded / of_zoom - 1.0).abs() < 1e-12 && zoomed.camera.zoom == 1.0);
+            }
+        }
+    }
+
+    #[test]
+    fn a_sphere_may_be_framed_instead_of_all() {
+        let mut scene = Scene { spheres: spheres(), ..Scene::default() };
+        let framed = FramedSphere { center: DVec3::new(7.0, -2.0, -30.0), radius: 1.5 };
+        scene.camera.framed = Some(framed);
+        let mut alone = Scene::default();
+        alone.spheres.push(framed.center, framed.radius, 0, Rgb::ONE);
+        let [of_scene, of_sphere] = [&scene, &alone].map(|scene| pose(scene).unwrap().eye);
+        assert_eq!(of_scene, of_sphere);
     }
 
     #[test]

@@ -8,7 +8,7 @@ pub use sequence::SequenceBounds;
 
 use super::{WorldError, fit};
 use crate::elementary::{atan, hypot, rotation, sin, tan};
-use crate::scene::{Camera, Insets, Pose, Projection, Rgb, Scene, Spheres};
+use crate::scene::{Camera, FramedSphere, Insets, Pose, Projection, Rgb, Scene, Spheres};
 use glam::{DMat3, DVec3};
 
 /// Number of sweeps after which Jacobi's method has converged for any 3 x 3 matrix.
@@ -30,6 +30,7 @@ pub fn include_points(scene: &mut Scene, points: &[DVec3]) -> Result<(), WorldEr
     let open = matches!(scene.camera.projection, Projection::Orthographic { height: None });
     let placed = matches!(scene.camera.pose, Pose::LookAt { .. }) && !open;
     if placed || scene.is_empty() {
+        scene.camera.fold_zoom();
         return Ok(());
     }
     let count = scene.spheres.len();
@@ -43,10 +44,12 @@ pub fn include_points(scene: &mut Scene, points: &[DVec3]) -> Result<(), WorldEr
     let camera = &mut scene.camera;
     camera.pose =
         Pose::LookAt { eye: placed.eye, target: placed.eye + placed.axes.forward * distance };
-    camera.insets = Insets::default();
+    (camera.insets, camera.framed) = (Insets::default(), None);
     if let Projection::Orthographic { height } = &mut camera.projection {
         *height = Some(2.0 * placed.half_height);
+        camera.zoom = 1.0;
     }
+    camera.fold_zoom();
     Ok(())
 }
 
@@ -84,6 +87,7 @@ pub fn orbit(scene: &mut Scene, points: &[DVec3], angle: f64) {
         }
     };
     scene.camera.pose = Pose::LookAt { eye: target + rotation * (eye - target), target };
+    scene.camera.framed = None;
 }
 
 /// Fixes a fitted camera so that it frames a sphere; it stays as it is if it sees nothing.
@@ -133,17 +137,27 @@ fn fit_distance(scene: &mut Scene, radius: f64) -> f64 {
     }
 }
 
-/// Returns a sphere about the middle of the bounds that contains all spheres and points.
-fn bounding_sphere(scene: &Scene, points: &[DVec3]) -> (DVec3, f64) {
+/// Rolls a camera clockwise about its view axis by an angle in degrees, so that the picture turns counterclockwise.
+pub fn roll(camera: &mut Camera, degrees: f64) {
+    let Some([_, up, forward]) = picture_axes(camera) else { return };
+    // A direction along the view is replaced, and could not be turned.
+    let slanted = forward.cross(camera.up.normalize_or_zero()).length() > 1e-6;
+    let own = if slanted { camera.up } else { up };
+    camera.up = rotation(forward, degrees.to_radians()) * own;
+}
+
+/// Returns a sphere about the middle of the bounds that contains all spheres and points, or the sphere that the camera
+/// frames.
+pub fn bounding_sphere(scene: &Scene, points: &[DVec3]) -> (DVec3, f64) {
+    if let Some(FramedSphere { center, radius }) = scene.camera.framed {
+        return (center, radius);
+    }
     let spheres = &scene.spheres;
     let rows = || (0..spheres.len()).map(|row| (spheres.center(row), spheres.radius[row]));
     let points = || points.iter().map(|&point| (point, 0.0));
     let all = || rows().chain(scene.other_hulls()).chain(points());
-    let low = all().fold(DVec3::INFINITY, |low, (center, radius)| low.min(center - radius));
-    let high = all().fold(DVec3::NEG_INFINITY, |high, (center, radius)| high.max(center + radius));
-    let middle = (low + high) / 2.0;
-    let reach = all().map(|(center, radius)| center.distance(middle) + radius);
-    (middle, reach.fold(0.0, f64::max))
+    let found = FramedSphere::around(all);
+    found.map_or((DVec3::ZERO, 0.0), |sphere| (sphere.center, sphere.radius))
 }
 
 /// Returns the camera with the broadest view of the spheres: along the axis of least variance of the
@@ -284,6 +298,20 @@ mod tests {
         }
         let axes = principal_axes(&Spheres::default());
         assert!(axes[0].cross(axes[1]).dot(axes[2]).abs() > 0.999);
+    }
+
+    #[test]
+    fn rolls_turn_what_is_up_to_the_right_and_back() {
+        let pose = Pose::Fit { direction: DVec3::NEG_Z, margin: 0.0 };
+        let camera = Camera { pose, up: DVec3::Y, ..Camera::default() };
+        let mut rolled = camera.clone();
+        roll(&mut rolled, 90.0);
+        assert!(rolled.up.distance(DVec3::X) < 1e-12, "{}", rolled.up);
+        let slanted = DVec3::new(0.0, 1.0, 0.7);
+        let mut rolled = Camera { up: slanted, ..camera };
+        roll(&mut rolled, 33.0);
+        roll(&mut rolled, -33.0);
+        assert!(rolled.up.distance(slanted) < 1e-12);
     }
 
     #[test]

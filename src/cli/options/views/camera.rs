@@ -1,5 +1,7 @@
 //! Values of the options for cameras.
 
+use crate::cli::options::values;
+use spherule_render::compose;
 use spherule_render::scene::Axis;
 use spherule_render::suggest;
 
@@ -25,6 +27,11 @@ pub(super) fn up(text: &str) -> Result<UpArg, String> {
     up.map(UpArg).ok_or_else(|| suggest::help(text, axes().chain(["auto"]), "directions are"))
 }
 
+/// A magnification.
+pub(super) fn zoom(text: &str) -> Result<f64, String> {
+    compose::zoom(values::finite(text).unwrap_or(0.0))
+}
+
 /// 0 to 0.9.
 pub(super) fn margin(text: &str) -> Result<f64, String> {
     let share = text.parse().ok().filter(|share| (0.0..=0.9).contains(share));
@@ -41,6 +48,14 @@ mod tests {
             assert_eq!(up(name).map(UpArg::name), Ok(name));
         }
         assert!(up("iso").is_err() && up("").is_err() && up("+z").is_err());
+    }
+
+    #[test]
+    fn zooms_are_factors() {
+        assert_eq!((zoom("2"), zoom("0.01")), (Ok(2.0), Ok(0.01)));
+        for text in ["0", "-1", "1001", "NaN", "200%", ""] {
+            assert!(zoom(text).is_err(), "{text}");
+        }
     }
 
     #[test]

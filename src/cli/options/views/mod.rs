@@ -8,13 +8,15 @@ use self::lens::LensArgs;
 use super::lists::{self, List};
 use super::names::{self, Names};
 use super::values;
+use super::with_text::{self, WithText};
 use crate::cli::failure::Failure;
 use clap::value_parser;
-use spherule_render::compose::{CameraRequest, CellRequest, LensRequest};
-use spherule_render::scene::particles::{Orientation, UpReason};
-use spherule_render::scene::{Axis, Camera, Projection, Scene};
+use spherule_render::compose::{CameraRequest, CellRequest, LensRequest, LookAt};
+use spherule_render::scene::particles::{Orientation, Selection, UpReason};
+use spherule_render::scene::{Axis, Camera, FileError, Projection, Scene};
 use spherule_render::world::framing::view::{self, View};
 use std::f64::consts::TAU;
+use std::path::{Path, PathBuf};
 
 /// Projections, with their default parameters.
 const PROJECTIONS: Names<Projection> = Names(&[
@@ -58,10 +60,35 @@ pub(in crate::cli) struct ViewArgs {
     /// particles, their cell and the file format [default: auto]
     #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = camera::up)]
     up: Option<UpArg>,
-    /// Place the camera to show everything from a side: auto (along the principal axis of least extent), x,
-    /// y, z (from that end of the axis), -x, -y, -z, or iso
-    #[arg(long, value_name = "SIDE", allow_hyphen_values = true, value_parser = |text: &str| text.parse::<View>())]
+    /// Place the camera to show everything from a direction: auto (along the principal axis of least extent), x, y, z (from
+    /// that end of the axis), -x, -y, -z, iso, azimuth and elevation in degrees as in 30,20, or a vector as in 1,1,0. 0,0
+    /// looks from x if z is up, and 90,0 from y, as in matplotlib
+    #[arg(long, value_name = "DIRECTION", allow_hyphen_values = true, value_parser = |text: &str| text.parse::<View>())]
     view: Option<View>,
+    /// Turn the camera to particles for which EXPR is true (as for --select), or to a point X,Y,Z, and frame them: particles as
+    /// large as possible, or all around the point [default: all particles]
+    #[arg(
+        long,
+        value_name = "EXPR|X,Y,Z",
+        allow_hyphen_values = true,
+        value_parser = |text: &str| text.parse::<WithText<LookAt>>()
+    )]
+    look_at: Option<WithText<LookAt>>,
+    /// Magnification about the middle of what is framed: 2 is twice as large, from the same place [default: 1]
+    #[arg(long, value_name = "FACTOR", allow_hyphen_values = true, value_parser = camera::zoom)]
+    zoom: Option<f64>,
+    /// Roll the camera clockwise about its view axis, so that the image turns counterclockwise, in degrees
+    #[arg(
+        long,
+        value_name = "DEGREES",
+        allow_hyphen_values = true,
+        conflicts_with = "turntable",
+        value_parser = values::finite
+    )]
+    roll: Option<f64>,
+    /// Take the camera and its lens from a scene file, as the viewer saves it
+    #[arg(long, value_name = "FILE")]
+    camera: Option<PathBuf>,
     /// Camera projection
     #[arg(long, value_parser = names::parser(&PROJECTIONS))]
     projection: Option<Projection>,
@@ -99,7 +126,13 @@ impl ViewArgs {
         lists::put(&mut list, "replicate", self.replicate.map(|[a, b, c]| format!("{a},{b},{c}")));
         lists::put(&mut list, "cell", self.cell.then_some(true));
         lists::put(&mut list, "up", self.up.map(UpArg::name));
-        lists::put(&mut list, "view", self.view.map(View::name));
+        lists::put(&mut list, "view", self.view.map(|view| view.to_string()));
+        with_text::insert(&mut list, "look_at", &self.look_at);
+        lists::put(&mut list, "zoom", self.zoom);
+        lists::put(&mut list, "roll", self.roll);
+        // Folders are private.
+        let name = self.camera.as_ref().and_then(|path| path.file_name());
+        lists::put(&mut list, "camera", name.map(|name| name.to_string_lossy().into_owned()));
         let projection = self.projection.map(|projection| PROJECTIONS.name(&projection));
         lists::put(&mut list, "projection", projection);
         lists::put(&mut list, "margin", self.margin);
@@ -137,9 +170,28 @@ impl ViewArgs {
     }
 
     /// Returns the view that is asked for.
-    pub(in crate::cli) fn camera(&self) -> CameraRequest {
-        let Self { view, projection, margin, turntable, .. } = *self;
-        CameraRequest { view, projection, margin, turns: turntable.is_some() }
+    pub(in crate::cli) fn camera(&self) -> Result<CameraRequest, FileError> {
+        let Self { view, projection, margin, turntable, zoom, roll, .. } = *self;
+        let own = self.camera.as_deref().map(Camera::load).transpose()?;
+        let look_at = match self.look_at.as_deref() {
+            Some(LookAt::Point(point)) => Some(*point),
+            Some(LookAt::Selection(_)) | None => None,
+        };
+        let turns = turntable.is_some();
+        Ok(CameraRequest { own, view, look_at, zoom, roll, projection, margin, turns })
+    }
+
+    /// Returns the selection of the particles that are framed.
+    pub(in crate::cli) fn framed(&self) -> Option<Selection> {
+        match self.look_at.as_deref() {
+            Some(LookAt::Selection(selection)) => Some(selection.clone()),
+            Some(LookAt::Point(_)) | None => None,
+        }
+    }
+
+    /// Returns the file that the camera is taken from.
+    pub(in crate::cli) fn camera_file(&self) -> Option<&Path> {
+        self.camera.as_deref()
     }
 
     /// Returns a sentence on what is up and why; `None` if the view does not depend on it.
@@ -147,8 +199,8 @@ impl ViewArgs {
         let reason = orientation.reason;
         let up = match self.view {
             Some(View::Auto) if !reason.is_evident() => return None,
-            Some(View::Iso | View::Side(_)) => orientation.up_of_sides(),
-            Some(View::Auto) | None => orientation.up,
+            Some(view) if view.is_from_side() => orientation.up_of_sides(),
+            _ => orientation.up,
         };
         let chosen = reason == UpReason::Chosen;
         (!chosen).then(|| format!("{} is up: {reason}; --up chooses another direction", up.name()))

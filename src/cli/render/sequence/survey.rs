@@ -83,7 +83,9 @@ impl Survey {
             compose::choose(&setup.request, &mut staged).map_err(|fault| setup.refuse(fault))?;
             compose::leave_room(&mut staged.scene, setup.request.camera.turns);
             self.orientation = staged.orientation;
-            self.bounds = SequenceBounds::new(&staged.scene);
+            let orientation = self.orientation.as_ref();
+            let vertical = compose::vertical(&setup.request, &staged.scene.camera, orientation);
+            self.bounds = SequenceBounds::new(&staged.scene, vertical);
         }
         let Staged { scene, legend, .. } = staged;
         if let Some(legend) = legend {

@@ -20,8 +20,8 @@ use self::block::Source;
 use super::keys::{EnvironmentKeys, SECTIONS, Schema};
 use super::particles::{self, Orientation, Particles, ReadOptions, TypeMaterial};
 use super::{
-    Annotations, Environment, EnvironmentMap, FileError, Light, Material, NamedMaterial, Preset,
-    Rgb, Scene, Settings, Spheres,
+    Annotations, Camera, Environment, EnvironmentMap, FileError, Light, Material, NamedMaterial,
+    Preset, Rgb, Scene, Settings, Spheres,
 };
 use crate::memory::{self, Shortage, read_at_most};
 use memchr::memchr_iter;
@@ -80,6 +80,41 @@ fn check_memory(text: &str) -> Result<(), Shortage> {
     memory::check(parse_bytes(text))
 }
 
+/// Calls `read` with the sections of a scene.
+fn with_root<T>(
+    source: &Source,
+    read: impl FnOnce(&Block) -> Result<T, FileError>,
+) -> Result<T, FileError> {
+    let text = source.text;
+    check_memory(text)
+        .map_err(|shortage| FileError::whole_file(source.path, format!("needs {shortage}")))?;
+    let document = DeTable::parse(text).map_err(|error| {
+        let end = text.len()..text.len();
+        source.error(error.span().unwrap_or(end), error.message())
+    })?;
+    let names = iter::once("title").chain(SECTIONS.map(|(name, _)| name));
+    let schema = Rc::new(Schema::plain("the scene", names));
+    read(&Block::open(source, schema, 0..0, document.get_ref())?)
+}
+
+impl Camera {
+    /// Reads the camera of a scene file, and nothing else of it: files that it names need not be there.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be read, is no TOML, or its `[camera]` is not valid.
+    pub fn load(path: &Path) -> Result<Self, FileError> {
+        let text = read_text(path)?;
+        let source = Source { path, text: &text, folder: Path::new("") };
+        with_root(&source, |root| {
+            root.section()?.ok_or_else(|| {
+                let error = FileError::whole_file(path, "has no [camera]");
+                error.with_help("a camera is that of a scene file (.toml), as the viewer saves it")
+            })
+        })
+    }
+}
+
 impl Scene {
     /// Reads a scene file and the files that it names, with paths relative to the scene file.
     ///
@@ -108,16 +143,7 @@ impl Scene {
     /// Same as [`Scene::load`].
     pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, FileError> {
         let source = Source { path: Path::new(name), text, folder };
-        check_memory(text)
-            .map_err(|shortage| FileError::whole_file(source.path, format!("needs {shortage}")))?;
-        let document = DeTable::parse(text).map_err(|error| {
-            let end = text.len()..text.len();
-            source.error(error.span().unwrap_or(end), error.message())
-        })?;
-        let names = iter::once("title").chain(SECTIONS.map(|(name, _)| name));
-        let schema = Rc::new(Schema::plain("the scene", names));
-        let root = Block::open(&source, schema, 0..0, document.get_ref())?;
-        read(&source, &root)
+        with_root(&source, |root| read(&source, root))
     }
 
     /// Reads a particle file into a scene with default settings and the look of the default [`Preset`],

@@ -98,7 +98,7 @@ fn sections_in_wrong_brackets_are_reported() {
 /// Texts with one value each that is out of its range, and one at the range's end.
 #[test]
 fn every_range_is_checked() {
-    let cases: [(&str, &[&str], &str); 53] = [
+    let cases: [(&str, &[&str], &str); 56] = [
         ("[color_bar]\nrange = ?", &["[2, 1]", "[0, inf]", "1", "[1]"], "[1, 1]"),
         ("[color_bar]\nrange = [1, 2]\nposition = ?", &["\"middle\"", "1"], "\"top-left\""),
         ("[legend]\nentries = ?", &["1", "[\"C\"]", "[[\"C\"]]", "[[1, 1]]"], "[[\"C\", \"red\"]]"),
@@ -144,6 +144,9 @@ fn every_range_is_checked() {
         ("[camera]\naperture = ?", &["-0.1", "nan", "inf"], "0"),
         ("[camera]\naperture = 1\nfocus = ?", &["0", "-1", "inf"], "1e-9"),
         ("[camera]\nnear = ?", &["-1", "nan"], "0"),
+        ("[camera]\nzoom = ?", &["0", "-1", "1001", "nan"], "2.5"),
+        ("[camera]\nradius = 1\ncenter = ?", &["1", "[0, inf, 0]"], "[1, 2, 3]"),
+        ("[camera]\ncenter = [1, 2, 3]\nradius = ?", &["0", "-1", "inf"], "0.5"),
         ("[environment]\ncolor = ?", &["-1", "[1, 2, inf]", "\"#12345\"", "1e31"], "1e30"),
         ("[environment]\nkind = \"gradient\"\nup = ?", &["[0, 0, 0]"], "[1, 0, 0]"),
         ("[environment]\nilluminates = ?", &["1", "\"yes\""], "false"),
@@ -198,6 +201,9 @@ fn contradicting_keys_are_reported() {
         ("[camera]\nfit = true\ntarget = [0, 0, 0]\n", 3),
         ("[camera]\neye = [1, 0, 0]\ntarget = [1, 0, 0]\n", 3),
         ("[camera]\nfocus = 3\n", 2),
+        ("[camera]\ncenter = [1, 2, 3]\n", 2),
+        ("[camera]\nradius = 2\n", 2),
+        ("[camera]\neye = [0, 0, 0]\ntarget = [1, 0, 0]\ncenter = [0, 0, 0]\n", 4),
         ("[camera]\nprojection = \"orthographic\"\nfov = 3\n", 3),
         ("[material.a]\nkind = \"conductor\"\n", 1),
         ("[material.a]\nkind = \"conductor\"\neta = 1\n", 1),

@@ -2,8 +2,8 @@
 
 use super::{Field, Group};
 use crate::scene::{
-    Camera, Environment, EnvironmentMap, Ground, Insets, Lens, Light, Material, NamedMaterial,
-    Pose, Projection, Rgb, Scene, Settings, Tone,
+    Camera, Environment, EnvironmentMap, Ground, Lens, Light, Material, NamedMaterial, Pose,
+    Projection, Rgb, Scene, Settings, Tone,
 };
 use glam::DVec3;
 
@@ -70,8 +70,7 @@ fn camera() -> Camera {
         pose: Pose::LookAt { eye, target },
         up: DVec3::Y,
         lens: Some(Lens { aperture: 0.06, focus: Some(7.5) }),
-        near: 0.0,
-        insets: Insets::default(),
+        ..Camera::default()
     }
 }
 

@@ -12,8 +12,8 @@ use crate::scene::generate::{Field, Generator, Grid, Lattice, Sphereflake, Volum
 use crate::scene::particles::{Cell, Format};
 use crate::scene::{
     Anchor, AxisTripod, BRIGHTEST, Camera, ColorBar, ColorLegend, ConductorFresnel, Environment,
-    EnvironmentMap, Ground, Insets, Label, Lens, Lettering, Light, Look, Material, Pose,
-    Projection, Rgb, ScaleBar, Slice, SliceMode,
+    EnvironmentMap, FramedSphere, Ground, Insets, Label, Lens, Lettering, Light, Look, Material,
+    Pose, Projection, Rgb, ScaleBar, Slice, SliceMode,
 };
 use crate::settings::Limits::{
     self, AboveTo, Any, Below, Between, NotNegative, Positive, Share, Within,
@@ -67,7 +67,7 @@ impl Section for Camera {
     const EMPTY: fn() -> Self = Self::default;
 
     fn visit<V: Visitor>(&mut self, keys: &mut V) {
-        let Self { projection, pose, up, lens, near, insets } = self;
+        let Self { projection, pose, up, lens, near, insets, zoom, framed } = self;
         let parallel = Projection::Orthographic { height: None };
         let kinds = [("perspective", Self::default().projection), ("orthographic", parallel)];
         keys.choose(key("projection", "perspective or parallel projection"), &kinds, projection);
@@ -93,7 +93,8 @@ impl Section for Camera {
             keys.forbid(&["eye", "target"], "fit = true", help);
         } else {
             let help = "remove it, or write fit = true instead of eye and target";
-            keys.forbid(&["direction", "margin", "insets"], "eye and target", help);
+            let fitted = ["direction", "margin", "insets", "center", "radius"];
+            keys.forbid(&fitted, "eye and target", help);
             if matches!(pose, Pose::Fit { .. }) {
                 *pose = looks;
             }
@@ -117,8 +118,14 @@ impl Section for Camera {
                 keys.visit(key("direction", help), Vector, direction);
                 let help = "with `fit`: fraction of the image left empty at its edges";
                 keys.visit(key("margin", help), Below(0.0, 1.0), margin);
+                visit_framed(framed, keys);
             }
         }
+        let help = "magnification about the middle of the image, or of what `fit` frames";
+        let mut own = Some(*zoom).filter(|zoom| *zoom != 1.0);
+        let (least, most) = (*Self::ZOOMS.start(), *Self::ZOOMS.end());
+        keys.visit(key("zoom", help).or("1"), Optional(Within(least, most)), &mut own);
+        *zoom = own.unwrap_or(1.0);
         keys.visit(key("up", "approximate up direction of the image"), Vector, up);
         let help = "distance of the near plane along the view axis, at which rays start";
         keys.visit(key("near", help), NotNegative, near);
@@ -154,6 +161,27 @@ impl Section for Camera {
             keys.refuse(&["insets"], message, Some(help));
         }
     }
+}
+
+/// Visits the keys of the sphere that a fitted camera frames.
+fn visit_framed<V: Visitor>(framed: &mut Option<FramedSphere>, keys: &mut V) {
+    let mut center = framed.map(|sphere| sphere.center);
+    let help = "with `fit`: center of a sphere that is framed instead of all bodies";
+    keys.visit(key("center", help).or("with `radius`, or neither"), Optional(Point), &mut center);
+    let mut radius = framed.map(|sphere| sphere.radius);
+    let help = "with `fit`: radius of the sphere that is framed";
+    keys.visit(
+        key("radius", help).or("with `center`, or neither"),
+        Optional(Positive),
+        &mut radius,
+    );
+    let help = "write both center = [x, y, z] and radius, or neither";
+    match (center, radius) {
+        (Some(_), None) => keys.refuse(&["center"], "`center` has no `radius`", Some(help)),
+        (None, Some(_)) => keys.refuse(&["radius"], "`radius` has no `center`", Some(help)),
+        _ => (),
+    }
+    *framed = center.zip(radius).map(|(center, radius)| FramedSphere { center, radius });
 }
 
 impl Section for Look {

@@ -201,8 +201,9 @@ mod tests {
     use crate::scene::particles::Cell;
     use crate::scene::{
         Anchor, Annotations, AxisTripod, BRIGHTEST, Background, ColorBar, ColorLegend,
-        ConductorFresnel, Filter, Ground, Insets, Integrator, Label, Lens, Lettering, Light,
-        LightChoice, Material, Projection, Roulette, SamplerKind, ScaleBar, Slice, SliceMode,
+        ConductorFresnel, Filter, FramedSphere, Ground, Insets, Integrator, Label, Lens, Lettering,
+        Light, LightChoice, Material, Projection, Roulette, SamplerKind, ScaleBar, Slice,
+        SliceMode,
     };
     use glam::DVec3;
     use std::sync::Arc;
@@ -337,8 +338,12 @@ mod tests {
     #[test]
     fn insets_survive() {
         let insets = Insets { left: 0.1, right: 1.0 / 3.0, bottom: 0.0, top: 1e-9 };
-        let camera = Camera { insets, ..Camera::default() };
-        assert_eq!(round_trip(&Scene { camera, ..Scene::default() }).camera.insets, insets);
+        let framed = Some(FramedSphere { center: DVec3::new(0.1, -2.0, 3e9), radius: 1e-3 });
+        let camera = Camera { insets, zoom: 1.5, framed, ..Camera::default() };
+        assert_eq!(
+            round_trip(&Scene { camera: camera.clone(), ..Scene::default() }).camera,
+            camera
+        );
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! A common camera for many scenes, the frames of a trajectory, which are not kept.
 
 use super::{WorldError, bounding_sphere, fit, include_points, orbit};
-use crate::scene::{Rgb, Scene, Spheres};
+use crate::scene::{Camera, Rgb, Scene, Spheres};
 use fit::{LIMITS, Limits};
 use glam::DVec3;
 
@@ -21,21 +21,25 @@ pub struct SequenceBounds {
 }
 
 impl SequenceBounds {
-    /// Creates the bounds of no scenes, for the camera of `view`. `None` if this camera is not fitted.
-    pub fn new(view: &Scene) -> Option<Self> {
-        let limits = Limits::new(view)?;
+    /// Creates the bounds of no scenes, for the camera of `view`, which may be placed already; `vertical` is the direction
+    /// that is up in the scenes. `None` if this camera has no direction or no room.
+    pub fn new(view: &Scene, vertical: DVec3) -> Option<Self> {
+        let limits = Limits::new(view, vertical)?;
+        // What it frames is added with the scenes.
         let view = Scene {
-            camera: view.camera.clone(),
+            camera: Camera { framed: None, ..view.camera.clone() },
             settings: view.settings.clone(),
             ..Scene::default()
         };
         Some(Self { view, limits, deciding: [None; LIMITS], bounding_sphere: None })
     }
 
-    /// Adds the visible spheres of a scene, and points that must be in the picture too.
+    /// Adds the visible spheres of a scene, and points that must be in the picture too, or the sphere that its camera frames.
     pub fn add(&mut self, scene: &Scene, points: &[DVec3]) {
         let mut any = false;
-        for (center, radius) in scene.framed().chain(points.iter().map(|&point| (point, 0.0))) {
+        let points = if scene.camera.framed.is_some() { &[] } else { points };
+        for (center, radius) in fit::targets(scene).chain(points.iter().map(|&point| (point, 0.0)))
+        {
             any = true;
             for (deciding, limit) in self.deciding.iter_mut().zip(self.limits.of(center, radius)) {
                 if deciding.is_none_or(|(least, ..)| limit < least) {
@@ -93,7 +97,7 @@ fn enclosing(first: (DVec3, f64), second: (DVec3, f64)) -> (DVec3, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Camera, Pose, Projection};
+    use crate::scene::{FramedSphere, Pose, Projection};
 
     /// A cluster that moves and grows from frame to frame.
     fn frame(number: i32) -> Scene {
@@ -109,7 +113,7 @@ mod tests {
 
     fn all(count: i32, camera: &Camera) -> (SequenceBounds, Scene) {
         let mut whole = Scene { camera: camera.clone(), ..Scene::default() };
-        let mut bounds = SequenceBounds::new(&whole).unwrap();
+        let mut bounds = SequenceBounds::new(&whole, camera.up).unwrap();
         for scene in (0..count).map(frame) {
             for row in 0..scene.spheres.len() {
                 whole.spheres.push(scene.spheres.center(row), 0.2, 0, Rgb::ONE);
@@ -155,11 +159,29 @@ mod tests {
     }
 
     #[test]
-    fn nothing_and_fixed_cameras_have_no_bounds() {
-        let empty = SequenceBounds::new(&Scene::default()).unwrap();
+    fn nothing_has_no_bounds_and_fixed_cameras_stay() {
+        let empty = SequenceBounds::new(&Scene::default(), DVec3::Y).unwrap();
         assert!(matches!(empty.view(None), Err(WorldError::NothingToFit)));
         let mut placed = frame(0);
         include_points(&mut placed, &[]).unwrap();
-        assert!(SequenceBounds::new(&placed).is_none());
+        let mut bounds = SequenceBounds::new(&placed, DVec3::Y).unwrap();
+        (0..3).for_each(|number| bounds.add(&frame(number), &[]));
+        assert_eq!(bounds.view(None).unwrap().camera, placed.camera);
+    }
+
+    #[test]
+    fn what_the_cameras_frame_is_followed_over_all_frames() {
+        let framed = |x: f64| FramedSphere { center: DVec3::X * x, radius: 1.0 };
+        let mut bounds = SequenceBounds::new(&frame(0), DVec3::Y).unwrap();
+        let mut few = Scene::default();
+        for x in [0.0, 7.0, 3.0] {
+            let mut scene = frame(1);
+            scene.camera.framed = Some(framed(x));
+            bounds.add(&scene, &[DVec3::splat(1e3)]);
+            few.spheres.push(framed(x).center, framed(x).radius, 0, Rgb::ONE);
+        }
+        include_points(&mut few, &[]).unwrap();
+        assert_eq!(bounds.view(None).unwrap().camera, few.camera);
+        assert_eq!(bounds.bounding_sphere, Some((DVec3::X * 3.5, 4.5)));
     }
 }

@@ -22,8 +22,8 @@ mod words;
 pub use self::census::MoleculeCensus;
 use self::grammar::{Node, Tree};
 use super::style::add_numbers;
-use super::{AlignBy, ParticleFrame, Particles};
-use crate::scene::{FileError, Spheres};
+use super::{AlignBy, ParticleFrame, ParticleStyle, Particles};
+use crate::scene::{FileError, FramedSphere, Spheres};
 use std::ops::Range;
 use std::path::Path;
 use std::str::FromStr;
@@ -184,6 +184,36 @@ impl Selection {
             particles.retain(&keep);
         }
         Ok(())
+    }
+}
+
+impl Particles {
+    /// Returns a sphere about the middle of the particles that the camera frames, with all of them; `None` if the style names
+    /// none, or if there are no particles.
+    ///
+    /// # Errors
+    ///
+    /// The condition names no column there is, compares what cannot be compared, or is true of no particle.
+    pub fn framed(
+        &self,
+        path: &Path,
+        style: &ParticleStyle,
+    ) -> Result<Option<FramedSphere>, FileError> {
+        let Some(selection) = style.framed.as_ref().filter(|_| !self.spheres.is_empty()) else {
+            return Ok(None);
+        };
+        let chosen = selection.chosen(self)?;
+        let rows = || (0..self.spheres.len()).filter(|row| chosen[*row]);
+        let spheres = || rows().map(|row| (self.spheres.center(row), self.spheres.radius[row]));
+        let framed = FramedSphere::around(spheres);
+        framed.map(Some).ok_or_else(|| {
+            let message = format!("none of its {} particles is looked at", self.spheres.len());
+            let error = FileError::whole_file(path, message);
+            match bind::absent(&selection.tree, self) {
+                Some(help) => error.with_help(help),
+                None => error,
+            }
+        })
     }
 }
 

@@ -64,6 +64,8 @@ pub struct ParticleStyle {
     /// True if a selection may be empty, a column may have no valid number, and a type may be missing,
     /// as in some frames of a trajectory.
     pub allow_empty: bool,
+    /// Particles that the camera frames, instead of all.
+    pub framed: Option<Selection>,
 }
 
 impl ParticleStyle {
@@ -99,6 +101,7 @@ impl ParticleStyle {
             columns.extend(expression::columns(name));
         }
         columns.extend(self.translucent.iter().flat_map(Selection::columns));
+        columns.extend(self.framed.iter().flat_map(Selection::columns));
         let arrows = self.arrows.iter().flat_map(|arrows| &arrows.columns.0);
         columns.extend(arrows.flat_map(|name| expression::columns(name)));
         if self.ids {
