@@ -17,7 +17,7 @@ pub struct CameraRequest {
     pub own: Option<Camera>,
     /// The direction.
     pub view: Option<View>,
-    /// The point that the camera looks at; particles that it frames are [`ParticleStyle::framed`].
+    /// The point that the camera looks at; particles that it frames are [`framed`](crate::scene::particles::ParticleStyle::framed).
     pub look_at: Option<DVec3>,
     /// Magnification, within [`Camera::ZOOMS`].
     pub zoom: Option<f64>,
