@@ -117,11 +117,11 @@ pub mod scene {
     pub mod particles {
         #[doc(inline)]
         pub use spherule_render::scene::particles::{
-            ArrowCentering, ArrowSizes, ArrowStyle, Arrows, BondRules, BondSource, Bonds, Cell,
-            Coloring, ColumnColors, ElementColors, FirstFrame, Legend, Model, Opacity, Orientation,
-            ParticleStyle, Particles, PeriodicError, Selection, Shapes, Trails, TrajectoryReader,
-            TypeMaterial, TypeStyle, UpReason, VectorColumns, accept_radii_expression, of_frame,
-            of_frame_in, read,
+            Applied, ArrowCentering, ArrowSizes, ArrowStyle, Arrows, BondRules, BondSource, Bonds,
+            Cell, Coloring, ColumnColors, ElementColors, FirstFrame, Legend, Model, Opacity,
+            Orientation, ParticleStyle, Particles, PeriodicError, Properties, SelectedStyle,
+            Selection, Shapes, Trails, TrajectoryReader, TypeMaterial, TypeStyle, UpReason,
+            VectorColumns, accept_radii_expression, map_named, of_frame, of_frame_in, read,
         };
     }
 }

@@ -58,6 +58,8 @@ if TYPE_CHECKING:
         bond_radius: float
         opacity: float | str
         translucent: str
+        hide: str
+        styles: str | Sequence[str] | Mapping[str, str | Mapping[str, Any]]
         arrows: Any
         arrow_scale: float
         arrow_radius: float
@@ -96,7 +98,7 @@ PARTICLES = frozenset("radius semi_axes orientation color kinds materials column
 #: Arguments that say how particles are drawn.
 STYLE = frozenset(
     "values radius_scale select colors color_by color_map color_range color_log color_bar label_of_values types model "
-    "bonds bond_radius opacity translucent arrows arrow_scale arrow_radius arrow_color arrow_center preset background view look_at zoom roll up wrap replicate show_cell slices slice_mode".split()
+    "bonds bond_radius opacity translucent hide styles arrows arrow_scale arrow_radius arrow_color arrow_center preset background view look_at zoom roll up wrap replicate show_cell slices slice_mode".split()
 )
 
 #: Sections of scene files; the color bar is one, too, if it is a dict.

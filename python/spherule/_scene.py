@@ -58,6 +58,11 @@ class Scene:
             columns or expressions, or what these have in common before x, y and z. ``arrow_scale`` is the length for a
             vector of length 1, ``arrow_radius`` that of shafts, ``arrow_color`` a color for all, and ``arrow_center`` the part
             at the particle: ``"tail"``, ``"middle"`` or ``"head"``.
+        hide: Do not draw particles for which this is true, as for ``select``.
+        styles: Styles of selections, of which later ones win: ``{"resname ATP": {"model": "ball-and-stick", "color":
+            "magenta"}}``, or texts such as ``"chain A: opacity=0.3"``. Properties are ``model``, ``color`` (a color,
+            ``"element"``, or a column or an expression, with ``map``, ``range`` and ``log``), ``radius``, ``scale``,
+            ``bonds``, ``bond_radius``, ``opacity``, ``material`` and ``visible``.
         translucent: Draw only particles for which this is true with ``opacity`` (0.2 if that is not given).
         select: Draw only particles for which this is true, as in ``"element != H and z > 10"``.
         radius_scale: A factor on all radii.
@@ -75,7 +80,7 @@ class Scene:
         slices: Planes that cut spheres away, as in ``["z > 50%"]``; ``slice_mode`` is ``"remove"``, ``"caps"`` or
             ``"hide"``.
         render, look, legend, axes, scale_bar, label, lettering, environment, ground, slice, light, material,
-            sphere, stick, ellipsoid, cone, triangle, mesh, generate, file: Sections, as :mod:`spherule.sections` types
+            sphere, stick, ellipsoid, cone, triangle, mesh, generate, file, style: Sections, as :mod:`spherule.sections` types
             them.
         triangles: (n, 3, 3) corners of triangles, such as the faces of a wall or of an isosurface; or a dict of these
             ``corners``, a ``material`` and a ``color`` for all.
@@ -363,7 +368,7 @@ def _style(given: Mapping[str, Any]) -> dict[str, Any]:
         if not low <= high:
             raise Error(f"`color_range` is {low:g} to {high:g}, but the lower number comes first")
         ends = (low, high)
-    names = ("select", "colors", "color_by", "color_map", "model", "bonds", "translucent")
+    names = ("select", "hide", "colors", "color_by", "color_map", "model", "bonds", "translucent")
     style: dict[str, Any] = {name: _optional(given, name, _values.text) for name in names}
     through = given.get("opacity")
     if not (through is None or isinstance(through, str)):
@@ -372,7 +377,42 @@ def _style(given: Mapping[str, Any]) -> dict[str, Any]:
     style.update(_arrows(given))
     style["bond_radius"] = _optional(given, "bond_radius", _values.number)
     color_log = _values.flag("color_log", given.get("color_log", False))
-    return {**style, "color_range": ends, "color_log": color_log, "types": types}
+    styles = _styles(given.get("styles"))
+    return {**style, "color_range": ends, "color_log": color_log, "types": types, "styles": styles}
+
+
+def _styles(styles: Any) -> list[tuple[str, tuple[float, ...] | None]]:
+    """The styles of selections as texts of the program's option ``--style``, and the color that replaces theirs."""
+    if styles is None:
+        return []
+    if isinstance(styles, str):
+        return [(styles, None)]
+    if isinstance(styles, Mapping):
+        return [_selected(_values.text("styles", select), look) for select, look in styles.items()]
+    return [(_values.text(f"styles[{row}]", style), None) for row, style in enumerate(styles)]
+
+
+def _selected(select: str, look: Any) -> tuple[str, tuple[float, ...] | None]:
+    """A style that is given as its selection, and its properties as a text or by name."""
+    if isinstance(look, str):
+        return f"{select}: {look}", None
+    name = f"styles[{select!r}]"
+    color = None
+    words = []
+    # Maps belong to the color, which comes first.
+    for key, value in sorted(_values.table(name, look).items(), key=lambda pair: pair[0] != "color"):
+        at = f"{name}.{key}"
+        if key == "color" and not isinstance(value, str):
+            color = tuple(float(channel) for channel in _arrays.colors(at, value, 1)[0])
+            value = "white"
+        elif isinstance(value, bool):
+            value = "yes" if value else "no"
+        elif isinstance(value, (tuple, list)):
+            value = _numbers(at, value)
+        elif not isinstance(value, str):
+            value = repr(_values.number(at, value))
+        words.append(f"{key.replace('_', '-')}={value}")
+    return f"{select}: {' '.join(words)}", color
 
 
 def _arrows(given: Mapping[str, Any]) -> dict[str, Any]:

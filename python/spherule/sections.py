@@ -314,6 +314,29 @@ class File(_File, total=False):
     scale: float
 
 
+class _Style(TypedDict):
+    """The required key of ``[[style]]``."""
+
+    select: str
+
+
+class Style(_Style, total=False):
+    """``[[style]]``: the look of some particles of the files of ``[[file]]``."""
+
+    model: Model
+    color: str
+    map: str
+    range: Sequence[float]
+    log: bool
+    radius: float
+    scale: float
+    bonds: bool
+    bond_radius: float
+    opacity: float
+    material: Literal["lambertian", "plastic", "metal", "glass", "mirror", "emitter"]
+    visible: bool
+
+
 class TypeStyle(TypedDict, total=False):
     """The style of a type of particles, which overrides all else; as the program's ``--type``."""
 
@@ -348,3 +371,4 @@ class Sections(TypedDict, total=False):
     mesh: Sequence[Mesh]
     generate: Sequence[Generate]
     file: Sequence[File]
+    style: Sequence[Style]

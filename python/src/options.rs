@@ -6,14 +6,15 @@ use crate::first_frame::FirstFrameTable;
 use glam::{DQuat, DVec3};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
-use spherule::color::{Map, Rgb, Spacing};
+use spherule::color::{Rgb, Spacing};
 use spherule::particles::{
     Bonds, Cell, Codes, Element, Format, Kind, Kinds, LengthUnit, NumberColumn, ParticleFrame,
     Radii, ReadOptions, TextColumn,
 };
 use spherule::scene::particles::{
     ArrowCentering, ArrowStyle, BondSource, Coloring, ColumnColors, ElementColors, Model, Opacity,
-    ParticleStyle, Selection, TypeMaterial, TypeStyle, accept_radii_expression,
+    ParticleStyle, Properties, SelectedStyle, Selection, TypeMaterial, TypeStyle,
+    accept_radii_expression, map_named,
 };
 use std::str::FromStr;
 
@@ -82,6 +83,9 @@ pub(crate) struct StyleTable {
     arrow_color: Option<[f32; 3]>,
     arrow_center: Option<String>,
     types: Vec<TypeTuple>,
+    hide: Option<String>,
+    /// The styles of selections, as the program's option `--style` has them, and linear colors that replace theirs.
+    styles: Vec<(String, Option<[f32; 3]>)>,
 }
 
 impl ParticleTable<'_> {
@@ -190,7 +194,10 @@ impl StyleTable {
             (Some(column), _) => {
                 let (map, reversed) = match self.color_map.as_deref() {
                     None => (None, false),
-                    Some(name) => map_of(name).map_err(fault)?,
+                    Some(name) => {
+                        let (map, reversed) = map_named(name).map_err(fault)?;
+                        (Some(map), reversed)
+                    }
                 };
                 let spacing = if self.color_log { Spacing::Logarithmic } else { Spacing::Linear };
                 let ends = self.color_range;
@@ -223,10 +230,27 @@ impl StyleTable {
             if let Some(opacity) = opacity.filter(|opacity| !(0.0..=1.0).contains(opacity)) {
                 return Err(format!("the opacity of `{name}` is {opacity}, but must be 0 to 1"));
             }
-            let material = known.transpose()?;
-            Ok(TypeStyle { name, radius, color, material, opacity, element: None })
+            let properties = Properties {
+                radius,
+                color: color.map(Coloring::Uniform),
+                material: known.transpose()?,
+                opacity: opacity.map(Opacity::Number),
+                ..Properties::default()
+            };
+            Ok(TypeStyle { name, properties, element: None })
         });
         let types = types.collect::<Result<_, _>>().map_err(fault)?;
+        let hidden = selection(self.hide.as_deref())?.map(SelectedStyle::hidden);
+        let mut styles: Vec<SelectedStyle> = hidden.into_iter().collect();
+        for (row, (text, color)) in self.styles.iter().enumerate() {
+            let parsed = text.parse::<SelectedStyle>();
+            let mut own = parsed.map_err(|why| fault(format!("styles[{row}]: {why}")))?;
+            own.properties.color =
+                color.map(Rgb::from).map(Coloring::Uniform).or(own.properties.color);
+            styles.push(own);
+        }
+        let radii = styles.iter_mut().filter_map(|own| own.properties.radius.as_mut());
+        radii.for_each(|radius| *radius *= radius_scale);
         Ok(ParticleStyle {
             select,
             coloring,
@@ -237,6 +261,7 @@ impl StyleTable {
             translucent,
             arrows,
             types,
+            styles,
             ..ParticleStyle::default()
         })
     }
@@ -269,21 +294,10 @@ impl StyleTable {
 }
 
 fn model_of(name: &str) -> Result<Model, String> {
-    let found = Model::ALL.iter().find(|(own, _)| *own == name).map(|(_, model)| *model);
-    found.ok_or_else(|| {
+    Model::named(name).ok_or_else(|| {
         let names = Model::ALL.map(|(name, _)| name).join(", ");
         format!("unknown model \"{name}\"; models are {names}")
     })
-}
-
-/// The map with a name, which may end in `_r` for the reversed one.
-fn map_of(name: &str) -> Result<(Option<Map>, bool), String> {
-    let (stem, reversed) = name.strip_suffix("_r").map_or((name, false), |stem| (stem, true));
-    let map = Map::named(stem).ok_or_else(|| {
-        let names = Map::ALL.map(Map::name).join(", ");
-        format!("unknown color map \"{name}\"; maps are {names}, each also reversed with _r")
-    })?;
-    Ok((Some(map), reversed))
 }
 
 fn is_share(color: Rgb) -> bool {

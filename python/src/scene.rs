@@ -450,7 +450,9 @@ impl Work {
     fn renumbers(&self) -> bool {
         // Radii may be 0 after a factor: their rows are dropped.
         let scaled = self.options.radius_scale != 1.0;
-        self.request.style.select.is_some() || self.request.cell.copies.is_some() || scaled
+        let style = &self.request.style;
+        let drops = style.select.is_some() || !style.styles.is_empty();
+        drops || self.request.cell.copies.is_some() || scaled
     }
 }
 

@@ -33,6 +33,22 @@ GROUPS = [
         ({"bonds": "*-*<3"}, ["--bonds", "*-*<3"]),
     ],
     [({"opacity": 0.5}, ["--opacity", "0.5"]), ({"translucent": "z > 5"}, ["--translucent", "z > 5"])],
+    [
+        (
+            {"styles": {"tags == 1": {"color": "gold", "opacity": 0.5}, "element O": {"visible": False}}},
+            ["--style", "tags == 1: color=gold opacity=0.5", "--style", "element O: visible=no"],
+        ),
+        (
+            {"styles": ["z > 5: model=licorice bond-radius=0.2"]},
+            ["--style", "z > 5: model=licorice bond-radius=0.2"],
+        ),
+        (
+            {"styles": {"all": {"color": "tags + z", "map": "magma", "range": (0, 9)}}},
+            ["--style", "all: color=tags + z map=magma range=0,9"],
+        ),
+        ({"styles": {"Z": "radius=2"}}, ["--style", "Z: radius=2"]),
+    ],
+    [({"hide": "element O"}, ["--hide", "element O"])],
     [({"types": {"Cu": {"color": "teal", "radius": 0.9}}}, ["--type", "Cu:color=teal,radius=0.9"])],
     [
         ({"slices": ["z > 60%"]}, ["--slice", "z > 60%"]),

@@ -157,3 +157,73 @@ fn options_without_effect_on_particles_are_named() {
         assert!(stderr.contains(&format!("{option} has no effect")), "{option}: {stderr}");
     }
 }
+
+const COMPLEX: &str = "\
+ATOM      1  CA  GLY A   1       0.000   0.000   0.000  1.00  0.00           C
+ATOM      2  C   GLY A   1       1.500   0.000   0.000  1.00  1.00           C
+ATOM      3  CB  ALA B   2       3.000   0.000   0.000  1.00  2.00           C
+HETATM    4  C1  LIG C   1       0.000   5.000   0.000  1.00  3.00           C
+HETATM    5  O1  LIG C   1       1.300   5.000   0.000  1.00  4.00           O
+HETATM    6  O   HOH D   1       0.000   0.000   5.000  1.00  5.00           O
+";
+
+#[test]
+fn selections_have_styles_of_their_own() {
+    let folder = Folder::new();
+    folder.write("a.pdb", COMPLEX);
+    let picture = |args: &[&str]| {
+        folder.picture("a.ppm", &[&["a.pdb"], args].concat());
+        Image::read(folder.path("a.ppm")).expect("a picture")
+    };
+    let ligand = ["--style", "ligand: model=ball-and-stick color=magenta"];
+    let pictures = [
+        picture(&[]),
+        picture(&ligand),
+        picture(&[&ligand[..], &["--hide", "water"]].concat()),
+        picture(&[&ligand[..], &["--style", "protein: opacity=0.3"]].concat()),
+        picture(&[&ligand[..], &["--color-by", "chain", "--legend", "right"]].concat()),
+        picture(&["--style", "protein: color=bfactor map=turbo", "--style", "all: scale=0.8"]),
+    ];
+    for (place, picture) in pictures.iter().enumerate() {
+        assert!(!pictures[..place].contains(picture), "{place}");
+    }
+    assert!(picture(&["--hide", "water"]) == picture(&["--style", "water: visible=no"]));
+    assert!(picture(&["--hide", "water"]) == picture(&["--select", "not water"]));
+    assert!(picture(&["--type", "O1:color=red"]) == picture(&["--style", "name O1: color=red"]));
+    folder.write("scene.toml", "[[file]]\npath = \"a.pdb\"\n[[style]]\nselect = \"ligandd\"\n");
+    for (file, style, message) in [
+        ("a.pdb", "ligand color=red", "expected a selection"),
+        ("a.pdb", "ligand: colr=red", "did you mean `color`"),
+        ("a.pdb", "resname ATP: color=red", "none of its 6 particles is styled"),
+        ("a.pdb", "ligandd: color=red", "did you mean `ligand`"),
+        ("scene.toml", "all: color=red", "need a particle file"),
+    ] {
+        let line = ["render", file, "--spp", "1", "-o", "x.ppm", "--style", style];
+        let output = folder.run(&line);
+        assert!(!output.status.success(), "{style}");
+        let stderr = text(&output.stderr);
+        assert!(stderr.contains(message), "{style}: {stderr}");
+        assert!(!folder.path("x.ppm").exists(), "{style}");
+    }
+}
+
+#[test]
+fn films_have_one_range_for_the_numbers_of_a_style() {
+    let folder = Folder::new();
+    let frame = |charges: [f64; 2]| {
+        let [a, b] = charges;
+        format!("2\nProperties=species:S:1:pos:R:3:q:R:1\nC 0 0 0 {a}\nO 3 0 0 {b}\n")
+    };
+    let empty = "0\nProperties=species:S:1:pos:R:3:q:R:1\n";
+    folder.write("a.xyz", &format!("{}{empty}{}", frame([0.0, 1.0]), frame([2.0, 4.0])));
+    let style = ["--style", "all: color=q map=turbo"];
+    let size = ["--size", "32x24", "--spp", "2", "--quiet"];
+    let line = ["render", "a.xyz", "--frame", "all", "-o", "film.ppm"];
+    assert!(folder.run(&[&line[..], &size, &style].concat()).status.success());
+    let last = Image::read(folder.path("film-0002.ppm")).expect("the last frame");
+    let ranged = ["--style", "all: color=q map=turbo range=0,4"];
+    assert!(folder.run(&[&line[..], &size, &ranged].concat()).status.success());
+    assert!(last == Image::read(folder.path("film-0002.ppm")).expect("the last frame"));
+    let none = folder.run(&[&line[..], &size, &["--style", "element N: color=red"]].concat());
+    assert!(text(&none.stderr).contains("no particle of a frame is styled"));
+}

@@ -8,7 +8,7 @@ use spherule_render::color::{self, Map, Spacing};
 use spherule_render::graphics::Format;
 use spherule_render::scene::particles::{
     ArrowCentering, ArrowStyle, BondSource, Coloring, ColumnColors, ElementColors, Legend, Model,
-    Opacity, ParticleStyle, Selection, TypeStyle, VectorColumns,
+    Opacity, ParticleStyle, SelectedStyle, Selection, TypeStyle, VectorColumns,
 };
 use spherule_render::scene::{Anchor, Rgb};
 use spherule_render::suggest;
@@ -21,7 +21,7 @@ use std::str::FromStr;
 pub(in crate::cli) struct AppearanceArgs {
     /// Draw only particles for which EXPR is true, as in 'element != H and z > 10'. Operators: == != < <= > >=,
     /// and, or, not, + - * / ^, parentheses; functions: abs, sqrt, exp, log, log10, min, max, and norm, as in
-    /// norm(velocity). Also words of VMD and MDAnalysis: protein, backbone, water, name CA CB,
+    /// norm(velocity). Also words of VMD and MDAnalysis: protein, ligand, backbone, water, ion, hetero, name CA CB,
     /// resid 5 to 10, within 5 of resname LIG, same residue as name ZN. Strings are words or quoted; names with
     /// other characters than letters, digits and _ . : [ ] need backticks. Columns have the file's names, or the
     /// names of other programs: resname, resid, chainid, segid, name, bfactor, occ, serial, q, mol
@@ -103,12 +103,27 @@ pub(in crate::cli) struct AppearanceArgs {
     /// Part of an arrow that is at its particle: tail, middle or head [default: tail]
     #[arg(long, value_name = "tail|middle|head", value_parser = |name: &str| values::named(&ArrowCentering::ALL, name, "parts of arrows are"), requires = "arrows")]
     arrow_center: Option<ArrowCentering>,
-    /// Radius, color, material and opacity of a particle type, by its name or element; overrides all else; may be
-    /// repeated. Colors are #rrggbb or CSS names; materials are lambertian, plastic, metal, glass, mirror and
-    /// emitter. The element of a type gives it radii, colors and bonds, as in 1:element=O
+    /// Style of a selection, as in 'resname ATP MG: model=ball-and-stick color=magenta'; may be repeated, later ones
+    /// win, and override all other options. Selections are those of --select. Properties: model; color, which is a
+    /// CSS color, element, or a column or an expression, with map, range and log; radius; scale, a factor on radii;
+    /// bonds (yes or no) and bond-radius; opacity; material: lambertian, plastic, metal, glass, mirror or emitter;
+    /// visible (yes or no)
+    #[arg(
+        long = "style",
+        value_name = "EXPR: PROPERTY=VALUE ...",
+        allow_hyphen_values = true,
+        value_parser = |text: &str| text.parse::<WithText<SelectedStyle>>()
+    )]
+    styles: Vec<WithText<SelectedStyle>>,
+    /// Do not draw particles for which EXPR is true; as in --select
+    #[arg(long, value_name = "EXPR", allow_hyphen_values = true, value_parser = |text: &str| text.parse::<WithText<Selection>>())]
+    hide: Option<WithText<Selection>>,
+    /// Style of a particle type, by its name or element, as in Na:radius=1.2,color=gold,material=glass: the properties
+    /// of --style, which overrides it, and element, which gives the type radii, colors and bonds, as in 1:element=O;
+    /// may be repeated
     #[arg(
         long = "type",
-        value_name = "NAME:radius=R,color=COLOR,material=M,opacity=A,element=E",
+        value_name = "NAME:PROPERTY=VALUE,...",
         value_parser = |text: &str| text.parse::<WithText<TypeStyle>>()
     )]
     types: Vec<WithText<TypeStyle>>,
@@ -117,7 +132,6 @@ pub(in crate::cli) struct AppearanceArgs {
     #[arg(
         long,
         value_name = "FILE|POSITION",
-        requires = "color_by",
         value_parser = bar
     )]
     pub(in crate::cli) color_bar: Option<BarPlace>,
@@ -238,7 +252,12 @@ impl AppearanceArgs {
     /// Converts the options for the reader; `radius_scale` multiplies the radii.
     pub(in crate::cli) fn looks(&self, radius_scale: f64) -> ParticleStyle {
         let mut types: Vec<TypeStyle> = self.types.iter().map(|look| (**look).clone()).collect();
-        let radii = types.iter_mut().filter_map(|look| look.radius.as_mut());
+        let hidden = self.hide.as_deref().cloned().map(SelectedStyle::hidden);
+        let own = self.styles.iter().map(|look| (**look).clone());
+        let mut styles: Vec<SelectedStyle> = hidden.into_iter().chain(own).collect();
+        let properties = types.iter_mut().map(|look| &mut look.properties);
+        let properties = properties.chain(styles.iter_mut().map(|look| &mut look.properties));
+        let radii = properties.filter_map(|own| own.radius.as_mut());
         radii.for_each(|radius| *radius *= radius_scale);
         let select = self.select.as_deref().cloned();
         let coloring = self.coloring();
@@ -252,6 +271,7 @@ impl AppearanceArgs {
             translucent: self.translucent.as_deref().cloned(),
             arrows: self.arrows(),
             types,
+            styles,
             ..ParticleStyle::default()
         }
     }
@@ -284,6 +304,8 @@ impl AppearanceArgs {
         let center = ArrowCentering::ALL.iter().find(named);
         lists::put(&mut list, "arrow_center", center.map(|(name, _)| *name));
         with_text::insert(&mut list, "type", &self.types);
+        with_text::insert(&mut list, "hide", &self.hide);
+        with_text::insert(&mut list, "style", &self.styles);
         list
     }
 

@@ -30,7 +30,7 @@ pub(super) fn notes(setup: &RenderSetup, scene: &Scene, world: &World) -> Vec<St
         note(true, reason.is_some(), &name, reason.as_deref().unwrap_or_default());
     }
     let ao = matches!(settings.integrator, Integrator::Ao { .. });
-    let materials = setup.request.style.types.iter().any(|look| look.material.is_some());
+    let materials = setup.request.style.types.iter().any(|look| look.properties.material.is_some());
     let matte = "the integrator ao ignores materials";
     note(materials, ao, "--type with a material", matte);
     let short = settings.depth.is_some_and(|depth| depth < ROULETTE_BEGINS);

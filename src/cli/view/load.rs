@@ -150,7 +150,12 @@ impl Base {
             frame: self.frame.unwrap_or(0),
             frames: self.frames,
             own_materials: self.scene.is_none()
-                && (setup.request.style.types.iter().any(|look| look.material.is_some())
+                && (setup
+                    .request
+                    .style
+                    .types
+                    .iter()
+                    .any(|look| look.properties.material.is_some())
                     || self.particles.material_names.iter().any(|name| !name.is_empty())),
             ..Facts::default()
         }
@@ -184,7 +189,8 @@ fn stage(
         frame.map_or_else(|| frame_number(setup), |number| Ok(Value::Whole(number as i64)))?;
     let subject = Subject { path: Path::new(&*name), title: &title, frame: &frame };
     let staged = if let Some(scene) = scene {
-        let legend = request.style.apply(subject.path, &mut particles)?;
+        let applied = request.style.apply(subject.path, &mut particles)?;
+        let legend = applied.legend().cloned();
         let Particles { spheres, frame, .. } = particles;
         let ParticleFrame { kinds, numbers, texts, .. } = frame;
         let scene = compose::Content::Scene(Box::new(Scene { spheres, ..scene }));

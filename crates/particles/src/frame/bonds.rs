@@ -109,6 +109,11 @@ impl Bonds {
         self.pick(&rows.collect::<Vec<u32>>());
     }
 
+    /// Removes the bonds for whose ends `keep` is false.
+    pub fn keep(&mut self, keep: impl Fn([u32; 2]) -> bool) {
+        self.map(|bond| keep([bond.0, bond.1]).then_some(bond));
+    }
+
     /// Changes the rows of the particles. Repeated ones get bonds by [`Bonds::replicate`], which knows the cell.
     pub(super) fn change(&mut self, change: RowChange) {
         match change {

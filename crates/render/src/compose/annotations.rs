@@ -3,7 +3,7 @@
 use super::template::{Template, Value};
 use super::{Fault, Request, Subject};
 use crate::color;
-use crate::scene::particles::{Category, Cell, Coloring, Legend, LengthUnit, Particles};
+use crate::scene::particles::{Applied, Category, Cell, Coloring, Legend, LengthUnit, Particles};
 use crate::scene::{
     Anchor, Annotations, AxisTripod, ColorBar, ColorLegend, Label, Lettering, Rgb, ScaleBar, Scene,
 };
@@ -154,7 +154,8 @@ pub(super) struct Facts {
     pub(super) categories: Option<Vec<Category>>,
     /// True if colors stand for numbers.
     numeric: bool,
-    cell: Option<Cell>,
+    /// The cell, if the particles have one.
+    pub(super) cell: Option<Cell>,
     /// Symbol of the unit of length; empty if the unit is unknown.
     unit: &'static str,
     /// Step, time and the header's values; `None` if the scene is not of particles.
@@ -171,12 +172,12 @@ struct Header {
 
 impl Facts {
     /// Returns the facts about particles whose colors are final.
-    pub(super) fn of(request: &Request, particles: &Particles) -> Self {
-        let coloring = &request.style.coloring;
+    pub(super) fn of(request: &Request, particles: &Particles, applied: &Applied) -> Self {
+        let style = &request.style;
         let legend = request.annotations.legend.is_some();
         Self {
-            categories: legend.then(|| particles.categories(coloring)).flatten(),
-            numeric: matches!(coloring, Coloring::Column(colors) if colors.is_numeric(particles)),
+            categories: legend.then(|| particles.categories(style, applied)).flatten(),
+            numeric: style.column_colors().any(|colors| colors.is_numeric(particles)),
             cell: particles.frame.cell,
             unit: symbol(particles.frame.unit),
             header: Some(Header {
@@ -257,8 +258,10 @@ pub(super) fn add(
     match (asked.legend, &facts.categories) {
         (Some(position), Some(categories)) => {
             let label = match &request.style.coloring {
-                Coloring::Column(colors) => colors.column.clone(),
-                Coloring::Usual | Coloring::Elements(_) => String::new(),
+                Coloring::Column(colors) if request.style.colorings().count() == 1 => {
+                    colors.column.clone()
+                }
+                _ => String::new(),
             };
             annotations.legend = Some(color_legend(categories, label, position));
         }

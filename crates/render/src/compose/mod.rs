@@ -28,8 +28,8 @@ pub use self::template::{Template, Value};
 
 use self::annotations::Facts;
 use crate::scene::particles::{
-    ArrowSizes, Category, Cell, Kinds, Legend, NumberColumn, Orientation, ParticleStyle, Particles,
-    PeriodicError, Shapes, TextColumn, UpReason,
+    Applied, ArrowSizes, Category, Cell, Kinds, Legend, NumberColumn, Orientation, ParticleStyle,
+    Particles, PeriodicError, Shapes, TextColumn, UpReason,
 };
 use crate::scene::{Axis, Background, Camera, FileError, Preset, Scene, SliceMode, SlicePlane};
 use crate::settings;
@@ -149,8 +149,10 @@ impl Labels {
 pub struct Staged {
     /// The scene.
     pub scene: Scene,
-    /// The color scale, if colors stand for numbers.
+    /// The color scale, if colors stand for numbers: of several, the first.
     pub legend: Option<Legend>,
+    /// Results of the style of particles.
+    pub applied: Applied,
     /// The orientation of the particles, if the scene is of particles.
     pub orientation: Option<Orientation>,
     /// The names that colors stand for, if a legend of them is asked for.
@@ -229,7 +231,8 @@ impl Request {
     /// Returns the orientation of particles, with the direction that is asked for.
     pub fn orientation(&self, particles: &Particles) -> Orientation {
         let of_first = particles.first_frame.as_ref().map(|first| first.orientation);
-        let found = of_first.unwrap_or_else(|| Orientation::of(particles));
+        let found = of_first.or(particles.orientation);
+        let found = found.unwrap_or_else(|| Orientation::of(particles));
         match self.up {
             Some(up) => Orientation { up, reason: UpReason::Chosen, ..found },
             None => found,
@@ -290,7 +293,8 @@ fn of_particles(
     if let Some(sections) = &request.sections {
         particles.materials.clone_from(&sections.scene.materials);
     }
-    let legend = request.style.apply(path, &mut particles)?;
+    let applied = request.style.apply(path, &mut particles)?;
+    let mut facts = Facts::of(request, &particles, &applied);
     let shows_cell = request.cell.show || request.style.draws_crystal(&particles);
     repeat(request.cell, path, &mut particles)?;
     let cell = particles.frame.cell;
@@ -298,7 +302,8 @@ fn of_particles(
     let framed = particles.framed(path, &request.style)?;
     let mut rows = take_rows(&mut particles);
     let ellipsoid_rows = rows.as_mut().map(|rows| take_ellipsoids(rows, &particles.frame.shapes));
-    let facts = Facts::of(request, &particles);
+    // Copies have made it larger.
+    facts.cell = cell;
     let shared = shared.and_then(|shared| shared.orientation);
     let orientation = shared.unwrap_or_else(|| request.orientation(&particles));
     let arrow_sizes = particles.arrows.sizes;
@@ -314,7 +319,8 @@ fn of_particles(
     scene.camera.framed = framed;
     let staged = Staged {
         scene,
-        legend,
+        legend: applied.legend().cloned(),
+        applied,
         orientation: Some(orientation),
         categories: None,
         arrow_sizes,
@@ -338,6 +344,7 @@ fn of_scene(request: &Request, mut scene: Scene) -> Staged {
     Staged {
         scene,
         legend: None,
+        applied: Applied::default(),
         orientation: None,
         categories: None,
         arrow_sizes: None,

@@ -25,7 +25,7 @@ use crate::cli::options::appearance::BarPlace;
 use crate::cli::output;
 use crate::cli::picture_file;
 use crate::cli::source::Source;
-use spherule_render::scene::particles::{Coloring, Particles, ReadOptions, TrajectoryReader};
+use spherule_render::scene::particles::{Particles, ReadOptions, TrajectoryReader};
 use spherule_render::split::Part;
 use std::path::Path;
 use std::process::ExitCode;
@@ -64,7 +64,7 @@ pub(super) fn run(
     let survey = survey_frames(&setup, &plan, path, &options, &mut reader)?;
     survey.check(path, &setup.request.style)?;
     print_framing(&setup, &plan);
-    survey.fix_colors(&mut setup.request.style.coloring);
+    survey.fix_colors(&mut setup.request.style);
     survey.fix_arrows(setup.request.style.arrows.as_mut());
     let session = Session { video, ..session };
     Sequence { setup, plan, files, session, resumed }.of_frames(path, &options, reader, survey)
@@ -201,7 +201,7 @@ fn print_framing(setup: &RenderSetup, plan: &Plan) {
             output::note(format_args!("one camera frames all of {}", plural(frames, "frame")));
         }
         _ => {
-            let ranged = matches!(&setup.request.style.coloring, Coloring::Column(colors) if colors.ends.is_none());
+            let ranged = setup.request.style.column_colors().any(|own| own.ends.is_none());
             let colors = if ranged { ", and its color range applies to all images" } else { "" };
             output::note(format_args!(
                 "the camera frames the first frame{colors}: the input can be read only once"

@@ -7,8 +7,8 @@ use crate::cli::render::setup::{Common, RenderSetup};
 use spherule_render::compose::{self, Shared, Staged};
 use spherule_render::scene::FileError;
 use spherule_render::scene::particles::{
-    ArrowSizes, ArrowStyle, Category, Coloring, Orientation, ParticleFrame, ParticleStyle,
-    Particles, ReadOptions, TrajectoryReader,
+    ArrowSizes, ArrowStyle, Category, Orientation, ParticleFrame, ParticleStyle, Particles,
+    ReadOptions, TrajectoryReader,
 };
 use spherule_render::world::WorldError;
 use spherule_render::world::framing::SequenceBounds;
@@ -19,10 +19,12 @@ use std::path::Path;
 pub(super) struct Survey {
     bounds: Option<SequenceBounds>,
     orientation: Option<Orientation>,
-    /// Color range: the minimum and the maximum over all frames.
-    ends: Option<[f64; 2]>,
-    /// True if colors represent numbers, also if no frame has a finite one.
-    numeric: bool,
+    /// Color ranges of [`ParticleStyle::column_colors`]: the minimum and the maximum over all frames.
+    ends: Vec<Option<[f64; 2]>>,
+    /// True for those that are of numbers, also if no frame has a finite one.
+    numeric: Vec<bool>,
+    /// True for the styles whose selections hold a particle of a frame.
+    matched: Vec<bool>,
     /// The choices by the first frame of the file, and types and strings, whose order determines their colors.
     trajectory: TrajectoryReader,
     /// The names that colors stand for, if they are asked for.
@@ -57,14 +59,14 @@ impl Survey {
     /// Surveys the particles of a frame.
     pub(super) fn add(&mut self, setup: &RenderSetup, particles: Particles) -> Result<(), Failure> {
         self.frames += 1;
-        if let Coloring::Column(colors) = &setup.request.style.coloring {
-            self.numeric |= colors.is_numeric(&particles);
-        }
+        let numeric = setup.request.style.column_colors().map(|own| own.is_numeric(&particles));
+        any_of(&mut self.numeric, numeric);
         // The arrows of later frames have the sizes of those before.
         let mut sized = setup.clone();
         self.fix_arrows(sized.request.style.arrows.as_mut());
         let mut staged = stage(&sized, Some(particles))?;
         self.arrow_sizes = self.arrow_sizes.or(staged.arrow_sizes);
+        any_of(&mut self.matched, staged.applied.matched.iter().copied());
         if staged.scene.is_empty() {
             return Ok(());
         }
@@ -87,11 +89,12 @@ impl Survey {
             let vertical = compose::vertical(&setup.request, &staged.scene.camera, orientation);
             self.bounds = SequenceBounds::new(&staged.scene, vertical);
         }
-        let Staged { scene, legend, .. } = staged;
-        if let Some(legend) = legend {
-            let range = legend.scale.range;
-            let [low, high] = self.ends.unwrap_or([range.low(), range.high()]);
-            self.ends = Some([low.min(range.low()), high.max(range.high())]);
+        let Staged { scene, applied, .. } = staged;
+        self.ends.resize(applied.legends.len(), None);
+        for (ends, legend) in self.ends.iter_mut().zip(applied.legends) {
+            let Some(range) = legend.map(|legend| legend.scale.range) else { continue };
+            let [low, high] = ends.unwrap_or([range.low(), range.high()]);
+            *ends = Some([low.min(range.low()), high.max(range.high())]);
         }
         if let Some(bounds) = &mut self.bounds {
             bounds.add(&scene, &compose::corners(&scene));
@@ -99,10 +102,10 @@ impl Survey {
         Ok(())
     }
 
-    /// Sets the color range of all frames.
-    pub(super) fn fix_colors(&self, coloring: &mut Coloring) {
-        if let (Coloring::Column(colors), Some(ends)) = (coloring, self.ends) {
-            colors.ends.get_or_insert(ends);
+    /// Sets the color ranges of all frames.
+    pub(super) fn fix_colors(&self, style: &mut ParticleStyle) {
+        for (colors, ends) in style.column_colors_mut().zip(&self.ends) {
+            colors.ends = colors.ends.or(*ends);
         }
     }
 
@@ -117,12 +120,10 @@ impl Survey {
     pub(super) fn check(&self, path: &Path, looks: &ParticleStyle) -> Result<(), FileError> {
         if self.shown > 0 {
             looks.check_types(path, self.trajectory.names())?;
-            return match &looks.coloring {
-                Coloring::Column(colors) if self.numeric && self.ends.is_none() => {
-                    Err(colors.range_error(path))
-                }
-                _ => Ok(()),
-            };
+            looks.check_matched(path, &self.matched)?;
+            let mut ranges = looks.column_colors().zip(&self.numeric).zip(&self.ends);
+            let without = ranges.find(|((_, numeric), ends)| **numeric && ends.is_none());
+            return without.map_or(Ok(()), |((colors, _), _)| Err(colors.range_error(path)));
         }
         let frames = plural(self.frames, "frame");
         let message = format!("has no sphere in {frames} of the sequence");
@@ -154,5 +155,15 @@ impl Survey {
         let (orientation, categories) = (self.orientation, self.categories.clone());
         let shared = Shared { camera, orientation, ground, categories };
         Ok(Common { shared, frames_all: self.all })
+    }
+}
+
+/// Sets the rows of `all` for which `more` is true.
+fn any_of(all: &mut Vec<bool>, more: impl Iterator<Item = bool>) {
+    for (row, more) in more.enumerate() {
+        match all.get_mut(row) {
+            Some(own) => *own |= more,
+            None => all.push(more),
+        }
     }
 }

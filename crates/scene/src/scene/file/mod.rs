@@ -11,6 +11,7 @@ mod materials;
 mod mesh;
 mod render;
 mod spheres;
+mod styles;
 pub(in crate::scene) mod value;
 
 pub(in crate::scene) use block::Block;

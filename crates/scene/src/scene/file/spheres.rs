@@ -2,9 +2,10 @@
 
 use super::block::{Block, Source};
 use super::materials::{self, Materials};
+use super::styles;
 use crate::memory;
-use crate::scene::keys::{FileKeys, GenerateKeys, Schema, SphereKeys};
-use crate::scene::particles::{self, Radii, ReadOptions};
+use crate::scene::keys::{FileKeys, GenerateKeys, Schema, SphereKeys, StyleKeys};
+use crate::scene::particles::{self, BondSource, Columns, ParticleStyle, Radii, ReadOptions};
 use crate::scene::{BodyColumns as _, Ellipsoids, Footprint};
 use crate::scene::{FileError, Scene, Spheres};
 use std::path::PathBuf;
@@ -22,8 +23,17 @@ pub(super) fn read(
     for block in root.blocks(Schema::of::<GenerateKeys>())? {
         read_generate(&block, &mut scene.spheres, materials)?;
     }
-    for block in root.blocks(Schema::of::<FileKeys>())? {
-        read_file(source, &block, scene, materials)?;
+    let style = styles::read(root)?;
+    let files = root.blocks(Schema::of::<FileKeys>())?;
+    if let (Some(block), true) = (root.blocks(Schema::of::<StyleKeys>())?.first(), files.is_empty())
+    {
+        return Err(block.error_at(
+            "select",
+            "`[[style]]` is of the particles of `[[file]]`, and there is none",
+        ));
+    }
+    for block in files {
+        read_file(source, &block, &style, scene, materials)?;
     }
     Ok(())
 }
@@ -65,14 +75,20 @@ fn read_generate(
 fn read_file(
     source: &Source,
     block: &Block,
+    style: &ParticleStyle,
     scene: &mut Scene,
     materials: &mut Materials,
 ) -> Result<(), FileError> {
     let FileKeys { path, format, topology, radius, scale, .. } = block.read()?;
     let topology = topology.map(|file| existing(source, block, "topology", &file)).transpose()?;
+    let is_styled = !style.styles.is_empty();
+    let columns = Columns { wanted: style.columns(), ..Columns::default() };
+    let bonds = if is_styled { style.bond_source() } else { BondSource::default() };
     let options = ReadOptions {
         format,
         topology,
+        columns,
+        bonds,
         radii: radius.map_or(Radii::Auto, Radii::Missing),
         scale,
         ..ReadOptions::default()
@@ -83,6 +99,9 @@ fn read_file(
     let added = Footprint { others, ..Footprint::of_columns(&particles.spheres, &[]) };
     check_capacity(&scene.spheres, &added, added.scene(), materials)
         .map_err(|message| block.error_at("path", &message))?;
+    if is_styled {
+        return styles::append(block, &path, particles, style, scene, materials);
+    }
     let mut rows = Vec::new();
     for name in &particles.material_names {
         rows.push(if name.is_empty() {

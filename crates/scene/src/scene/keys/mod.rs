@@ -13,7 +13,8 @@ pub(in crate::scene) use kinds::Triple::Point;
 pub(in crate::scene) use kinds::{Kind, List, Optional, Quaternion};
 pub(in crate::scene) use schema::Schema;
 pub(in crate::scene) use table::{
-    EnvironmentKeys, FileKeys, GenerateKeys, GroundKeys, RADIUS, SECTIONS, SphereKeys, color, solid,
+    EnvironmentKeys, FileKeys, GenerateKeys, GroundKeys, RADIUS, SECTIONS, SphereKeys, StyleKeys,
+    color, solid,
 };
 
 use super::write::sections::quoted;

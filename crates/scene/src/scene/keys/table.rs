@@ -9,7 +9,7 @@ use crate::color::{Map, Range, Scale, Spacing};
 use crate::image::Image;
 use crate::scene::bodies::{ConeKeys, EllipsoidKeys, MeshKeys, StickKeys, TriangleKeys};
 use crate::scene::generate::{Field, Generator, Grid, Lattice, Sphereflake, Volume, Weekend};
-use crate::scene::particles::{Cell, Format};
+use crate::scene::particles::{Cell, Format, Model, TypeMaterial};
 use crate::scene::{
     Anchor, AxisTripod, BRIGHTEST, Camera, ColorBar, ColorLegend, ConductorFresnel, Environment,
     EnvironmentMap, FramedSphere, Ground, Insets, Label, Lens, Lettering, Light, Look, Material,
@@ -25,7 +25,7 @@ use std::sync::Arc;
 type SchemaOf = fn() -> Schema;
 
 /// The sections and their schemas, by the names of their keys; `title` is no section.
-pub(in crate::scene) const SECTIONS: [(&str, SchemaOf); 22] = [
+pub(in crate::scene) const SECTIONS: [(&str, SchemaOf); 23] = [
     ("render", Schema::render),
     ("camera", Schema::of::<Camera>),
     ("look", Schema::of::<Look>),
@@ -48,6 +48,7 @@ pub(in crate::scene) const SECTIONS: [(&str, SchemaOf); 22] = [
     ("mesh", Schema::of::<MeshKeys>),
     ("generate", Schema::of::<GenerateKeys>),
     ("file", Schema::of::<FileKeys>),
+    ("style", Schema::of::<StyleKeys>),
 ];
 
 /// Radiance and irradiance.
@@ -697,5 +698,79 @@ impl Section for FileKeys {
         keys.visit(key("radius", help).or(default), Optional(Positive), radius);
         let help = "factor for the file's positions and radii";
         keys.visit(key("scale", help), Positive, scale);
+    }
+}
+
+/// `[[style]]`: the look of some particles of all `[[file]]`s. Colors are in the words of options.
+#[derive(Clone)]
+pub(in crate::scene) struct StyleKeys {
+    pub(in crate::scene) select: String,
+    pub(in crate::scene) model: Option<Model>,
+    pub(in crate::scene) color: Option<String>,
+    pub(in crate::scene) map: Option<String>,
+    pub(in crate::scene) range: Option<[f64; 2]>,
+    pub(in crate::scene) log: bool,
+    pub(in crate::scene) radius: Option<f64>,
+    pub(in crate::scene) scale: Option<f64>,
+    pub(in crate::scene) bonds: Option<bool>,
+    pub(in crate::scene) bond_radius: Option<f64>,
+    pub(in crate::scene) opacity: Option<f64>,
+    pub(in crate::scene) material: Option<TypeMaterial>,
+    pub(in crate::scene) visible: bool,
+}
+
+impl Section for StyleKeys {
+    const NAME: &'static str = "[[style]]";
+    const EMPTY: fn() -> Self = || Self {
+        select: String::new(),
+        model: None,
+        color: None,
+        map: None,
+        range: None,
+        log: false,
+        radius: None,
+        scale: None,
+        bonds: None,
+        bond_radius: None,
+        opacity: None,
+        material: None,
+        visible: true,
+    };
+
+    fn visit<V: Visitor>(&mut self, keys: &mut V) {
+        let Self { select, model, color, map, range, log, radius, scale, .. } = self;
+        let own = key("select", "selection of particles, as in `--select`");
+        keys.visit(own.required("select = \"resname ATP\""), Text, select);
+        let help = "the way in which particles and their bonds are drawn";
+        keys.visit(
+            key("model", help).or("spheres without bonds"),
+            Optional(Word(&Model::ALL)),
+            model,
+        );
+        let help =
+            "color by name or `#rrggbb`, `\"element\"`, or a column or an expression over columns";
+        keys.visit(key("color", help).or("the file's, or the element's"), Optional(Text), color);
+        let help = "color map of a column of numbers, reversed with `_r` after its name";
+        keys.visit(key("map", help).or("`\"viridis\"`"), Optional(Text), map);
+        let help = "numbers at the ends of the map";
+        keys.visit(
+            key("range", help).or("the minimum and the maximum"),
+            Optional(List(Any)),
+            range,
+        );
+        keys.visit(key("log", "logarithmic map"), Flag, log);
+        let help = "radius as it is drawn, in the scene's unit";
+        keys.visit(key("radius", help).or("the model's"), Optional(Positive), radius);
+        keys.visit(key("scale", "factor on the radius").or("1"), Optional(Positive), scale);
+        let Self { bonds, bond_radius, opacity, material, visible, .. } = self;
+        let help = "whether bonds are drawn";
+        keys.visit(key("bonds", help).or("as the model has them"), Optional(Flag), bonds);
+        let help = "radius of the sticks of bonds, in the scene's unit";
+        keys.visit(key("bond_radius", help).or("the model's"), Optional(Positive), bond_radius);
+        keys.visit(key("opacity", "opacity").or("1"), Optional(Share), opacity);
+        let default = "that of the file, or of `[[file]]`";
+        let words = Optional(Word(&TypeMaterial::ALL));
+        keys.visit(key("material", "material").or(default), words, material);
+        keys.visit(key("visible", "whether the particles are drawn"), Flag, visible);
     }
 }

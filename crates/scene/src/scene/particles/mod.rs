@@ -27,8 +27,9 @@ pub use spherule_particles::{
     read_frame_after,
 };
 pub use style::{
-    ArrowCentering, ArrowSizes, ArrowStyle, Arrows, Category, Coloring, ColumnColors,
-    ElementColors, GHOST, Legend, Opacity, ParticleStyle, TypeMaterial, TypeStyle, VectorColumns,
+    Applied, ArrowCentering, ArrowSizes, ArrowStyle, Arrows, Category, Coloring, ColumnColors,
+    ElementColors, GHOST, Legend, Opacity, PROPERTIES, ParticleStyle, Properties, SelectedStyle,
+    TypeMaterial, TypeStyle, VectorColumns, map_named,
 };
 
 use super::FileError;

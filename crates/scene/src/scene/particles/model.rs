@@ -46,17 +46,81 @@ impl Model {
         self != Self::SpaceFilling
     }
 
-    /// Changes the radii of particles to those of the model, and sets that of sticks, which is `bond_radius` if it is given.
-    pub(super) fn apply(self, particles: &mut Particles, bond_radius: Option<f64>) {
-        let radii = &mut particles.spheres.radius;
-        let Some(median) = median(radii).filter(|_| self.draws_bonds()) else { return };
-        let usual = if self == Self::Licorice { LICORICE } else { STICK };
-        let stick = bond_radius.unwrap_or(usual * median);
+    /// Returns the model with this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(own, _)| *own == name).map(|(_, model)| *model)
+    }
+
+    /// Returns the radius of a particle of radius `radius` that is drawn with sticks of radius `stick`.
+    fn radius(self, radius: f64, stick: f64) -> f64 {
         match self {
-            Self::Licorice => radii.fill(stick),
-            _ => radii.iter_mut().for_each(|radius| *radius *= BALL),
+            Self::SpaceFilling => radius,
+            Self::BallAndStick => radius * BALL,
+            Self::Licorice => stick,
         }
-        particles.stick_radius = stick;
+    }
+
+    /// Returns the usual radius of sticks among particles of this median radius.
+    fn stick(self, median: f64) -> f64 {
+        median * if self == Self::Licorice { LICORICE } else { STICK }
+    }
+}
+
+/// Rows of particles with a model of their own, or with bonds of their own.
+pub(super) struct Part<'a> {
+    pub(super) rows: &'a [usize],
+    pub(super) model: Option<Model>,
+    /// True if bonds are drawn, also by a model without them; false if none is.
+    pub(super) bonds: Option<bool>,
+    /// Radius of the sticks of bonds.
+    pub(super) bond_radius: Option<f64>,
+}
+
+/// Changes the radii of particles to those of their models, and sets those of sticks: `base` and `bond_radius`, if it is given,
+/// are for all, `parts` for some, of which later ones win.
+pub(super) fn apply(
+    particles: &mut Particles,
+    base: Model,
+    bond_radius: Option<f64>,
+    parts: &[Part],
+) {
+    let Some(median) = median(&particles.spheres.radius) else { return };
+    let radii = &mut particles.spheres.radius;
+    if parts.is_empty() {
+        if base.draws_bonds() {
+            let stick = bond_radius.unwrap_or_else(|| base.stick(median));
+            for radius in radii.iter_mut() {
+                *radius = base.radius(*radius, stick);
+            }
+            particles.stick_radius = stick;
+        }
+        return;
+    }
+    let count = radii.len();
+    let mut models = vec![base; count];
+    let mut bonded: Vec<Option<bool>> = vec![None; count];
+    let mut sticks = vec![bond_radius; count];
+    for part in parts {
+        for &row in part.rows {
+            if let Some(model) = part.model {
+                (models[row], bonded[row]) = (model, None);
+            }
+            bonded[row] = part.bonds.or(bonded[row]);
+            sticks[row] = part.bond_radius.or(sticks[row]);
+        }
+    }
+    particles.stick_radii = vec![0.0; count];
+    for (row, radius) in radii.iter_mut().enumerate() {
+        let model = models[row];
+        let stick = sticks[row].unwrap_or_else(|| model.stick(median));
+        *radius = model.radius(*radius, stick);
+        if bonded[row].unwrap_or(model.draws_bonds()) {
+            particles.stick_radii[row] = stick;
+            particles.stick_radius = particles.stick_radius.max(stick);
+        }
+    }
+    if let Some(bonds) = &mut particles.frame.bonds {
+        bonds.keep(|ends| ends.iter().all(|&row| bonded[row as usize] != Some(false)));
     }
 }
 
@@ -88,19 +152,33 @@ impl Particles {
         };
         for bond in 0..bonds.len() {
             let ends = [bonds.first[bond], bonds.second[bond]].map(|row| row as usize);
+            let Some(radii) = self.stick_radii_of(ends) else { continue };
             let at = ends.map(|row| self.spheres.center(row));
             let along = bonds.vector(bond, at, self.frame.cell.as_ref());
             let (of, colors) = (ends.map(material), ends.map(|row| self.spheres.color_of(row)));
-            if bonds.shift_of(bond) == [0; 3] && of[0] == of[1] {
-                sticks.push(at, self.stick_radius, of[0], colors);
+            if bonds.shift_of(bond) == [0; 3] && of[0] == of[1] && radii[0] == radii[1] {
+                sticks.push(at, radii[0], of[0], colors);
                 continue;
             }
             for (end, half) in [along / 2.0, along / -2.0].into_iter().enumerate() {
                 let ends: [DVec3; 2] = [at[end], at[end] + half];
-                sticks.push(ends, self.stick_radius, of[end], [colors[end]; 2]);
+                sticks.push(ends, radii[end], of[end], [colors[end]; 2]);
             }
         }
         sticks
+    }
+
+    /// Returns the radii of the halves of a bond; `None` if it is not drawn, as neither end draws bonds. If one does, all of
+    /// the bond has its radius.
+    fn stick_radii_of(&self, ends: [usize; 2]) -> Option<[f64; 2]> {
+        if self.stick_radii.is_empty() {
+            return Some([self.stick_radius; 2]);
+        }
+        match ends.map(|row| self.stick_radii[row]) {
+            [0.0, 0.0] => None,
+            [0.0, radius] | [radius, 0.0] => Some([radius; 2]),
+            radii => Some(radii),
+        }
     }
 
     /// Returns the heads of arrows; arguments are those of [`Particles::sticks`].
@@ -172,7 +250,7 @@ mod tests {
     fn bonds_become_sticks_of_both_colors_and_halves_at_the_border() {
         let mut own = particles();
         assert!(Scene::of_particles(own.clone(), "").sticks.is_empty());
-        Model::BallAndStick.apply(&mut own, None);
+        apply(&mut own, Model::BallAndStick, None, &[]);
         assert_eq!(own.spheres.radius, [0.2; 3]);
         let sticks = Scene::of_particles(own, "").sticks;
         let x: Vec<[f64; 2]> = (0..3).map(|row| sticks.ends(row).map(|end| end.x)).collect();
@@ -185,7 +263,7 @@ mod tests {
     fn licorice_has_one_radius() {
         let mut own = particles();
         own.spheres.radius[1] = 3.0;
-        Model::Licorice.apply(&mut own, Some(0.3));
+        apply(&mut own, Model::Licorice, Some(0.3), &[]);
         let scene = Scene::of_particles(own, "");
         assert_eq!((scene.spheres.radius, scene.sticks.radius), (vec![0.3; 3], vec![0.3; 3]));
     }
@@ -222,7 +300,7 @@ mod tests {
     #[test]
     fn space_filling_leaves_particles_as_they_are() {
         let mut own = particles();
-        Model::SpaceFilling.apply(&mut own, Some(0.3));
+        apply(&mut own, Model::SpaceFilling, Some(0.3), &[]);
         assert_eq!(own, particles());
     }
 }

@@ -2,7 +2,7 @@
 
 use super::radii::{FoundRadii, apply_expression, half_spacing, radii};
 use super::style::{Arrows, Column, ElementColors, ID, INDEX, TypeMaterial};
-use super::{Cell, FirstFrame, ParticleFrame, ReadOptions, TextColumn};
+use super::{Cell, FirstFrame, Orientation, ParticleFrame, ReadOptions, TextColumn};
 use crate::color::category;
 use crate::memory;
 use crate::scene::{FileError, NamedMaterial, Rgb, Spheres};
@@ -24,6 +24,8 @@ pub struct Particles {
     pub opacities: Vec<Option<f64>>,
     /// Radius of the sticks that are drawn for bonds ([`Model`](super::Model)); 0: none are drawn.
     pub stick_radius: f64,
+    /// Radius of the sticks at each particle, if they differ; 0 where none are drawn.
+    pub stick_radii: Vec<f64>,
     /// Arrows for vectors, if they were asked for ([`ParticleStyle::arrows`](super::ParticleStyle::arrows)).
     pub arrows: Arrows,
     /// Chosen materials, by names in `material_names`; the others are defined by the scene.
@@ -32,6 +34,8 @@ pub struct Particles {
     pub guessed_radius: Option<f64>,
     /// The choices that all frames of the file have in common, if it has several.
     pub first_frame: Option<FirstFrame>,
+    /// The orientation of all particles, before a style dropped some or changed their radii.
+    pub orientation: Option<Orientation>,
 }
 
 impl Particles {

@@ -80,6 +80,45 @@ fn files_add_spheres_materials_and_warnings() {
 }
 
 #[test]
+fn styles_are_of_particles_of_files() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let water = "3\nwater\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n";
+    fs::write(folder.path().join("water.xyz"), water).expect("a file");
+    let parse = |styles: &str| {
+        let text = format!(
+            "[material.a]\nkind = \"plastic\"\n[[file]]\npath = \"water.xyz\"\nmaterial = \"a\"\n{styles}"
+        );
+        Scene::parse(&text, "s", folder.path())
+    };
+    let styles = "[[style]]\nselect = \"all\"\nmodel = \"licorice\"\nbond_radius = 0.1\n[[style]]\n\
+                  select = \"element H\"\ncolor = \"red\"\nopacity = 0.5\n";
+    let scene = parse(styles).expect("a scene");
+    assert_eq!(scene.spheres.radius, [0.1; 3]);
+    assert_eq!(scene.spheres.color[1..], [Rgb::X; 2]);
+    assert_eq!(scene.sticks.len(), 4, "halves of two opacities");
+    let material = |row: usize| &scene.materials[scene.spheres.material_of(row) as usize].material;
+    assert!(matches!(material(0), Material::Plastic { .. }));
+    assert_eq!([material(0).opacity(), material(1).opacity()], [1.0, 0.5]);
+    let scene = parse("[[style]]\nselect = \"element H\"\nvisible = false\n").expect("a scene");
+    assert_eq!(scene.spheres.len(), 1);
+    let mapped = "[[style]]\nselect = \"all\"\ncolor = \"x\"\nmap = \"magma\"\nrange = [-1, 1]\n";
+    assert_eq!(parse(mapped).expect("a scene").spheres.len(), 3);
+    for (styles, message) in [
+        ("[[style]]\n", "select"),
+        ("[[style]]\nselect = \"z >\"\n", "expected a number or a name"),
+        ("[[style]]\nselect = \"all\"\nmap = \"magma\"\n", "after color=COLUMN"),
+        ("[[style]]\nselect = \"all\"\nmodel = \"balls\"\n", "model"),
+        ("[[style]]\nselect = \"all\"\nrange = [0, 1]\n", "for colors by a column"),
+        ("[[style]]\nselect = \"all\"\ncolor = \"x\"\nrange = [1, 0]\n", "the lower number"),
+        ("[[style]]\nselect = \"all\"\ncolor = \"redd\"\n", "`redd`"),
+    ] {
+        let error = parse(styles).expect_err(styles);
+        assert!(error.to_string().contains(message), "{styles}: {error}");
+    }
+    assert!(fault("[[style]]\nselect = \"all\"\n").message.contains("[[file]]"));
+}
+
+#[test]
 fn every_scene_of_the_repository_parses() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     let mut count = 0;

@@ -3,6 +3,7 @@
 use super::functions::Function;
 use super::grammar::{Node, Tree, Value};
 use super::spatial;
+use super::vocabulary::Group;
 use super::words::{Sign, SpannedError};
 use crate::scene::particles::Codes;
 use crate::scene::particles::Particles;
@@ -172,6 +173,13 @@ fn truth<'p>(tree: &Tree, particles: &'p Particles) -> Result<Truth<'p>, Spanned
                 (tree.span.clone(), message)
             })?;
             Ok(Truth::Rows(rows))
+        }
+        Node::Word(word) if Column::find(particles, word).is_none() => {
+            let help = suggest::help(word, Group::words(), "words are");
+            Err((
+                tree.span.clone(),
+                format!("`{word}` is no condition; {help}; or compare a column, as in `z > 10`"),
+            ))
         }
         _ => Err((tree.span.clone(), "expected a comparison, as in `z > 10`".to_owned())),
     }

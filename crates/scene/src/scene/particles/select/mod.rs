@@ -48,7 +48,7 @@ const NAME: &str = "selection";
 ///
 /// ```text
 /// protein                      also backbone, sidechain, calpha, nucleic, nucleicbackbone, nucleicbase,
-///                              water, ions, lipids, hydrogen, noh, all, none
+///                              water, ions, lipids, ligand, hetero, hydrogen, noh, all, none
 /// name CA C* "O5'"             a column and the values it may have; `*` ends a beginning of texts
 /// resid 5 to 10 12             numbers from 5 to 10, and 12; also 5:10 and 5-10
 /// within 5 of resname LIG      with the ligand itself, over the periodic cell; exwithin: without it
@@ -159,31 +159,34 @@ impl Selection {
             .map_err(|(span, message)| FileError::at(Path::new(NAME), &self.text, 1, span, message))
     }
 
-    /// Drops the particles that the condition is false of, all of them only if that is allowed.
-    ///
-    /// # Errors
-    ///
-    /// The condition names no column there is, compares what cannot be compared, or is true of no
-    /// particle.
-    pub(super) fn apply(
+    /// Returns whether each particle is selected, an error if none is and that is not allowed; `what` happens to the
+    /// selected ones, in the message.
+    pub(super) fn some(
         &self,
         path: &Path,
-        particles: &mut Particles,
+        particles: &Particles,
         allow_empty: bool,
-    ) -> Result<(), FileError> {
-        let keep = self.chosen(particles)?;
-        if !keep.contains(&true) && !allow_empty {
-            let message = format!("none of its {} particles is selected", keep.len());
+        what: &str,
+    ) -> Result<Vec<bool>, FileError> {
+        let chosen = self.chosen(particles)?;
+        if !allow_empty && !chosen.contains(&true) {
+            let count = chosen.len();
+            let message = match what {
+                "selected" => format!("none of its {count} particles is selected"),
+                _ => format!("none of its {count} particles is {what}: `{}`", self.text),
+            };
             let error = FileError::whole_file(path, message);
             return Err(match bind::absent(&self.tree, particles) {
                 Some(help) => error.with_help(help),
                 None => error,
             });
         }
-        if keep.contains(&false) {
-            particles.retain(&keep);
-        }
-        Ok(())
+        Ok(chosen)
+    }
+
+    /// Returns the condition as it was written.
+    pub(super) fn text(&self) -> &str {
+        &self.text
     }
 }
 
@@ -202,18 +205,10 @@ impl Particles {
         let Some(selection) = style.framed.as_ref().filter(|_| !self.spheres.is_empty()) else {
             return Ok(None);
         };
-        let chosen = selection.chosen(self)?;
+        let chosen = selection.some(path, self, false, "looked at")?;
         let rows = || (0..self.spheres.len()).filter(|row| chosen[*row]);
         let spheres = || rows().map(|row| (self.spheres.center(row), self.spheres.radius[row]));
-        let framed = FramedSphere::around(spheres);
-        framed.map(Some).ok_or_else(|| {
-            let message = format!("none of its {} particles is looked at", self.spheres.len());
-            let error = FileError::whole_file(path, message);
-            match bind::absent(&selection.tree, self) {
-                Some(help) => error.with_help(help),
-                None => error,
-            }
-        })
+        Ok(FramedSphere::around(spheres))
     }
 }
 

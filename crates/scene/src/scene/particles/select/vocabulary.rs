@@ -86,10 +86,12 @@ pub(super) enum Group {
     Bases,
     Hydrogen,
     Heavy,
+    Ligand,
+    Hetero,
 }
 
 /// Words for groups, in VMD and `MDAnalysis`.
-const WORDS: [(&str, Group); 21] = [
+const WORDS: [(&str, Group); 25] = [
     ("all", Group::All),
     ("none", Group::None),
     ("protein", Group::Protein),
@@ -111,9 +113,18 @@ const WORDS: [(&str, Group); 21] = [
     ("noh", Group::Heavy),
     ("heavy", Group::Heavy),
     ("nohydrogen", Group::Heavy),
+    ("ligand", Group::Ligand),
+    ("ligands", Group::Ligand),
+    ("hetero", Group::Hetero),
+    ("het", Group::Hetero),
 ];
 
 impl Group {
+    /// Returns the words for groups.
+    pub(super) fn words() -> impl Iterator<Item = &'static str> + Clone {
+        WORDS.iter().map(|(word, _)| *word)
+    }
+
     /// Returns the group of a word, ignoring case.
     pub(super) fn named(word: &str) -> Option<Self> {
         WORDS.iter().find(|(own, _)| own.eq_ignore_ascii_case(word)).map(|(_, group)| *group)
@@ -124,7 +135,13 @@ impl Group {
         match self {
             Self::All | Self::None => &[],
             Self::Hydrogen | Self::Heavy => &[ELEMENT, NAME],
-            Self::Protein | Self::Nucleic | Self::Water | Self::Ions | Self::Lipids => &[RESNAME],
+            Self::Protein
+            | Self::Nucleic
+            | Self::Water
+            | Self::Ions
+            | Self::Lipids
+            | Self::Ligand
+            | Self::Hetero => &[RESNAME],
             Self::Backbone
             | Self::Sidechain
             | Self::AlphaCarbons
@@ -141,6 +158,11 @@ impl Group {
             Self::Water => WATER.contains(&name),
             Self::Ions => IONS.contains(&name),
             Self::Lipids => LIPIDS.contains(&name),
+            Self::Hetero => !PROTEIN.contains(&name) && !NUCLEIC.contains(&name),
+            Self::Ligand => {
+                let others = [Self::Protein, Self::Nucleic, Self::Water, Self::Ions, Self::Lipids];
+                !name.is_empty() && !others.iter().any(|group| group.has_residue(name))
+            }
             _ => false,
         }
     }
@@ -166,11 +188,15 @@ impl Group {
         Ok(match self {
             Self::All => vec![true; count],
             Self::None => vec![false; count],
-            Self::Protein => residues(&PROTEIN)?,
-            Self::Nucleic => residues(&NUCLEIC)?,
-            Self::Water => residues(&WATER)?,
-            Self::Ions => residues(&IONS)?,
-            Self::Lipids => residues(&LIPIDS)?,
+            Self::Protein
+            | Self::Nucleic
+            | Self::Water
+            | Self::Ions
+            | Self::Lipids
+            | Self::Ligand
+            | Self::Hetero => {
+                has_name(particles, RESNAME, "residues", &|name| self.has_residue(name))?
+            }
             Self::Backbone => both(residues(&PROTEIN)?, atoms(&BACKBONE)?, true),
             Self::Sidechain => both(residues(&PROTEIN)?, atoms(&BACKBONE)?, false),
             Self::AlphaCarbons => both(residues(&PROTEIN)?, atoms(&["CA"])?, true),

@@ -1,7 +1,7 @@
 //! Categories: the names that colors of particles stand for.
 
-use super::Coloring;
 use super::columns::Column;
+use super::{Applied, Coloring, ParticleStyle};
 use crate::color::Rgb;
 use crate::scene::particles::{Codes, Element, Particles};
 use std::collections::BTreeMap;
@@ -10,7 +10,7 @@ use std::path::Path;
 /// A name that a color stands for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Category {
-    /// The name: an element, a type or a text of a column.
+    /// The name: an element, a type, a text of a column, or a selection of one color.
     pub name: String,
     /// Linear color.
     pub color: Rgb,
@@ -28,35 +28,74 @@ struct Group {
 }
 
 impl Particles {
-    /// Returns the elements, types or texts that colors stand for, without repetition: those of the
-    /// column that particles are colored by, or else of their types. `None` if colors stand for numbers
-    /// or for nothing, as those of a file that differ within a type.
-    pub fn categories(&self, coloring: &Coloring) -> Option<Vec<Category>> {
-        let kinds = &self.frame.kinds;
-        if let Coloring::Column(colors) = coloring {
-            let Column::Texts { names, codes } = colors.column_of(Path::new(""), self).ok()? else {
-                return None;
-            };
-            let groups = self.groups(&codes, names.len())?;
-            let named = names.iter().map(|name| [*name; 2]);
-            return Some(merged(named.zip(groups)));
+    /// Returns the names that the colors of particles stand for, without repetition, after `style` was applied: the texts of the
+    /// column that they are colored by, or else their elements or types; and selections that have one color. `None`
+    /// if colors stand for numbers or for nothing, as those of a file that differ within a type.
+    pub fn categories(&self, style: &ParticleStyle, applied: &Applied) -> Option<Vec<Category>> {
+        let painters = &applied.painters;
+        let painted_by = |painter: u32| -> Vec<usize> {
+            let rows = 0..self.spheres.len();
+            rows.filter(|&row| painters.get(row).copied().unwrap_or(0) == painter).collect()
+        };
+        let mut categories = Vec::new();
+        let mut named = false;
+        let own =
+            style.styles.iter().map(|own| (own.selection.text(), own.properties.color.as_ref()));
+        let colorings = [("", Some(&style.coloring))].into_iter().chain(own);
+        for (painter, (name, coloring)) in colorings.enumerate() {
+            let Some(coloring) = coloring else { continue };
+            let rows = painted_by(painter as u32);
+            if painter > 0 && rows.is_empty() {
+                continue;
+            }
+            let Some(found) = self.categories_of(name, coloring, &rows) else { continue };
+            named = true;
+            categories.extend(found);
         }
-        if kinds.codes.is_empty() {
-            return None;
-        }
-        let groups = self.groups(&kinds.codes, kinds.table.len())?;
-        let named = kinds.table.iter().map(|kind| {
-            let element: Option<&str> = kind.element.map(Element::symbol);
-            [element.unwrap_or(&kind.name), &kind.name]
-        });
-        Some(merged(named.zip(groups)))
+        named.then_some(categories)
     }
 
-    /// Returns the color and the number of the particles of each code; `None` if those of one code have
+    /// Returns the names that the colors of these rows stand for; `name` is that of their selection.
+    fn categories_of(
+        &self,
+        name: &str,
+        coloring: &Coloring,
+        rows: &[usize],
+    ) -> Option<Vec<Category>> {
+        match coloring {
+            Coloring::Uniform(_) if name.is_empty() => None,
+            Coloring::Uniform(color) => {
+                let count = rows.len() as u64;
+                Some(vec![Category { name: name.to_owned(), color: *color, count }])
+            }
+            Coloring::Column(colors) => {
+                let Column::Texts { names, codes } = colors.column_of(Path::new(""), self).ok()?
+                else {
+                    return None;
+                };
+                let groups = self.groups(&codes, names.len(), rows)?;
+                Some(merged(names.iter().map(|name| [*name; 2]).zip(groups)))
+            }
+            Coloring::Usual | Coloring::Elements(_) => {
+                let kinds = &self.frame.kinds;
+                if kinds.codes.is_empty() {
+                    return None;
+                }
+                let groups = self.groups(&kinds.codes, kinds.table.len(), rows)?;
+                let named = kinds.table.iter().map(|kind| {
+                    let element: Option<&str> = kind.element.map(Element::symbol);
+                    [element.unwrap_or(&kind.name), &kind.name]
+                });
+                Some(merged(named.zip(groups)))
+            }
+        }
+    }
+
+    /// Returns the color and the number of those of some particles that have each code; `None` if those of one code have
     /// different colors.
-    fn groups(&self, codes: &Codes, count: usize) -> Option<Vec<Group>> {
+    fn groups(&self, codes: &Codes, count: usize, rows: &[usize]) -> Option<Vec<Group>> {
         let mut groups = vec![Group::default(); count];
-        for row in 0..codes.len().min(self.spheres.len()) {
+        for &row in rows.iter().filter(|row| **row < codes.len()) {
             let group = groups.get_mut(codes.code(row) as usize)?;
             let color = self.spheres.color_of(row);
             group.mixed |= *group.color.get_or_insert(color) != color;
@@ -114,8 +153,8 @@ mod tests {
         let columns = Columns { wanted: style.columns(), ..Columns::default() };
         let mut particles =
             read(&path, &ReadOptions { columns, ..ReadOptions::default() }).expect("particles");
-        style.apply(&path, &mut particles).expect("a valid style");
-        let found = particles.categories(&style.coloring)?;
+        let applied = style.apply(&path, &mut particles).expect("a valid style");
+        let found = particles.categories(style, &applied)?;
         Some(found.into_iter().map(|category| (category.name, category.count)).collect())
     }
 

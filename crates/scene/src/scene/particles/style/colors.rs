@@ -1,12 +1,15 @@
 //! Colors of elements and of columns.
 
+use super::Coloring;
 use super::columns::Column;
+use crate::color;
 use crate::color::elements::{cpk, jmol};
 use crate::color::{Map, Range, RangeError, Rgb, Scale, Spacing, category};
 use crate::scene::FileError;
 use crate::scene::particles::Codes;
 use crate::scene::particles::select::expression;
 use crate::scene::particles::{Element, LengthUnit, Particles};
+use crate::suggest;
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -31,7 +34,13 @@ impl ElementColors {
         color.unwrap_or(Rgb::splat(0.5))
     }
 
-    pub(super) fn apply(self, path: &Path, particles: &mut Particles) -> Result<(), FileError> {
+    /// Returns the colors of some rows; `None` for all rows.
+    fn paint(
+        self,
+        path: &Path,
+        particles: &Particles,
+        rows: Option<&[usize]>,
+    ) -> Result<Vec<Rgb>, FileError> {
         let kinds = &particles.frame.kinds;
         if kinds.table.iter().all(|kind| kind.element.is_none()) {
             let message = "cannot color by element: no particle has an element";
@@ -39,8 +48,31 @@ impl ElementColors {
             return Err(FileError::whole_file(path, message).with_help(help));
         }
         let table: Vec<Rgb> = kinds.table.iter().map(|kind| self.of(kind.element)).collect();
-        particles.spheres.color = table_colors(&kinds.codes, &table);
-        Ok(())
+        Ok(match rows {
+            Some(rows) => rows.iter().map(|&row| table[kinds.codes.code(row) as usize]).collect(),
+            None => table_colors(&kinds.codes, &table),
+        })
+    }
+}
+
+impl Coloring {
+    /// Returns the colors of some rows, `None` for all rows; nothing if they keep those that they have.
+    pub(super) fn paint(
+        &self,
+        path: &Path,
+        particles: &Particles,
+        rows: Option<&[usize]>,
+        allow_empty: bool,
+    ) -> Result<Option<Painted>, FileError> {
+        let plain = |colors| Painted { colors, legend: None, warnings: Vec::new() };
+        Ok(Some(match self {
+            Self::Usual => return Ok(None),
+            Self::Uniform(color) => {
+                plain(vec![*color; rows.map_or(particles.spheres.len(), <[usize]>::len)])
+            }
+            Self::Elements(scheme) => plain(scheme.paint(path, particles, rows)?),
+            Self::Column(colors) => colors.paint(path, particles, rows, allow_empty)?,
+        }))
     }
 }
 
@@ -80,27 +112,21 @@ pub(super) struct Painted {
 }
 
 impl ColumnColors {
-    /// Colors all particles.
-    pub(super) fn apply(
-        &self,
-        path: &Path,
-        particles: &mut Particles,
-        allow_empty: bool,
-    ) -> Result<Option<Legend>, FileError> {
-        let Painted { colors, legend, warnings } =
-            self.paint(path, particles, None, allow_empty)?;
-        particles.spheres.color = colors;
-        particles.frame.warnings.extend(warnings);
-        Ok(legend)
-    }
-
     /// Returns the column, or the numbers of the expression.
     pub(super) fn column_of<'p>(
         &self,
         path: &Path,
         particles: &'p Particles,
     ) -> Result<Column<'p>, FileError> {
-        expression::evaluate(path, particles, &self.column)
+        expression::evaluate(path, particles, &self.column).map_err(|error| match suggest::nearest(
+            &self.column,
+            color::names(),
+        ) {
+            Some(near) if error.help.is_none() => {
+                error.with_help(format!("the color `{near}` has a similar name"))
+            }
+            _ => error,
+        })
     }
 
     /// Returns the colors of some rows, whose values have the range of colors if none is given; `None` for all rows.
@@ -210,6 +236,20 @@ impl ColumnColors {
             self.column.clone()
         }
     }
+}
+
+/// Returns the map with a name, and whether it is reversed, as one whose name ends in `_r`.
+///
+/// # Errors
+///
+/// There is no such map; the names.
+pub fn map_named(name: &str) -> Result<(Map, bool), String> {
+    let (stem, reversed) = name.strip_suffix("_r").map_or((name, false), |stem| (stem, true));
+    let map = Map::named(stem).ok_or_else(|| {
+        let help = suggest::help(stem, Map::ALL.into_iter().map(Map::name), "maps are");
+        format!("unknown color map `{name}`; {help} (each also reversed, with _r)")
+    })?;
+    Ok((map, reversed))
 }
 
 /// Returns subject and verbs for so many particles.

@@ -5,20 +5,25 @@ mod categories;
 mod colors;
 mod columns;
 mod opacity;
+mod properties;
+mod selected;
 mod types;
 
 pub use arrows::{ArrowCentering, ArrowSizes, ArrowStyle, Arrows, VectorColumns};
 pub use categories::Category;
-pub use colors::{ColumnColors, ElementColors, Legend};
+use colors::Painted;
+pub use colors::{ColumnColors, ElementColors, Legend, map_named};
 use columns::SPEED;
 pub(super) use columns::{Column, ID, INDEX, missing, nearest, numbers, unknown};
 pub use opacity::{GHOST, Opacity};
+pub use properties::{PROPERTIES, Properties};
+pub use selected::{Applied, SelectedStyle};
 pub use types::{TypeMaterial, TypeStyle};
 
 use super::NumberColumn;
 use super::select::{Selection, expression};
-use super::{BondSource, Model, Particles, SharedNames};
-use crate::scene::FileError;
+use super::{BondSource, Model, Orientation, Particles, SharedNames};
+use crate::scene::{FileError, Rgb};
 use spherule_particles::internals::aliases;
 use std::path::Path;
 
@@ -29,6 +34,8 @@ pub enum Coloring {
     /// type.
     #[default]
     Usual,
+    /// One linear color, each channel 0 to 1.
+    Uniform(Rgb),
     /// Colors of elements, even if the file has colors.
     Elements(ElementColors),
     /// Colors by the numbers or texts of a column, or by an expression over columns.
@@ -57,8 +64,11 @@ pub struct ParticleStyle {
     pub translucent: Option<Selection>,
     /// Arrows for vectors of particles; `None` for none.
     pub arrows: Option<ArrowStyle>,
-    /// Styles of single types, which override all else; the last one for a type applies.
+    /// Styles of single types, which override the above; of those for a type, later ones win.
     pub types: Vec<TypeStyle>,
+    /// Styles of selections, which override all else; later ones win. Selections are of all particles, also of those that
+    /// `select` leaves out.
+    pub styles: Vec<SelectedStyle>,
     /// True if ids are read although neither colors nor the selection need them.
     pub ids: bool,
     /// True if a selection may be empty, a column may have no valid number, and a type may be missing,
@@ -80,6 +90,7 @@ impl ParticleStyle {
         match (&self.bonds, self.model) {
             (Some(source), _) => source.clone(),
             (None, Some(model)) if model.draws_bonds() => BondSource::Auto,
+            (None, _) if self.properties().any(Properties::draws_bonds) => BondSource::Auto,
             (None, Some(_)) => BondSource::None,
             (None, None) => BondSource::OfCrystals,
         }
@@ -91,15 +102,50 @@ impl ParticleStyle {
         self.bond_source() == BondSource::OfCrystals && particles.frame.bonds.is_some()
     }
 
+    /// The properties of types and of selections.
+    fn properties(&self) -> impl Iterator<Item = &Properties> {
+        let types = self.types.iter().map(|style| &style.properties);
+        types.chain(self.styles.iter().map(|style| &style.properties))
+    }
+
+    /// Returns the sources of colors: of all, of types and of selections.
+    pub fn colorings(&self) -> impl Iterator<Item = &Coloring> {
+        std::iter::once(&self.coloring)
+            .chain(self.properties().filter_map(|own| own.color.as_ref()))
+    }
+
+    /// Returns the colors by columns, in the order of their application.
+    pub fn column_colors(&self) -> impl Iterator<Item = &ColumnColors> {
+        self.colorings().filter_map(|coloring| match coloring {
+            Coloring::Column(colors) => Some(colors),
+            Coloring::Usual | Coloring::Uniform(_) | Coloring::Elements(_) => None,
+        })
+    }
+
+    /// Returns the same as [`ParticleStyle::column_colors`], to change them.
+    pub fn column_colors_mut(&mut self) -> impl Iterator<Item = &mut ColumnColors> {
+        let types = self.types.iter_mut().map(|style| &mut style.properties);
+        let all = types.chain(self.styles.iter_mut().map(|style| &mut style.properties));
+        let own = all.filter_map(|own| own.color.as_mut());
+        let colorings = std::iter::once(&mut self.coloring).chain(own);
+        colorings.filter_map(|coloring| match coloring {
+            Coloring::Column(colors) => Some(colors),
+            Coloring::Usual | Coloring::Uniform(_) | Coloring::Elements(_) => None,
+        })
+    }
+
     /// Returns the columns that this style names.
     fn typed_columns(&self) -> Vec<String> {
         let mut columns = self.select.as_ref().map_or_else(Vec::new, Selection::columns);
-        if let Coloring::Column(colors) = &self.coloring {
-            columns.extend(expression::columns(&colors.column));
+        columns.extend(self.column_colors().flat_map(|own| expression::columns(&own.column)));
+        let opacities =
+            self.properties().filter_map(|own| own.opacity.as_ref()).chain(&self.opacity);
+        for opacity in opacities {
+            if let Opacity::Column { name, .. } = opacity {
+                columns.extend(expression::columns(name));
+            }
         }
-        if let Some(Opacity::Column { name, .. }) = &self.opacity {
-            columns.extend(expression::columns(name));
-        }
+        columns.extend(self.styles.iter().flat_map(|style| style.selection.columns()));
         columns.extend(self.translucent.iter().flat_map(Selection::columns));
         columns.extend(self.framed.iter().flat_map(Selection::columns));
         let arrows = self.arrows.iter().flat_map(|arrows| &arrows.columns.0);
@@ -111,35 +157,43 @@ impl ParticleStyle {
     }
 
     /// Applies the style to particles that were read from `path` with the columns of
-    /// [`ParticleStyle::columns`]. Returns the legend if colors stand for numbers.
+    /// [`ParticleStyle::columns`]. Returns the meaning of colors, if they stand for numbers or names.
     ///
     /// # Errors
     ///
-    /// The file has no such column, type or element, the column has no range, or the selection is empty
+    /// The file has no such column, type or element, the column has no range, or a selection is empty
     /// or invalid.
-    pub fn apply(
-        &self,
-        path: &Path,
-        particles: &mut Particles,
-    ) -> Result<Option<Legend>, FileError> {
-        for style in &self.types {
-            style.check().map_err(|message| FileError::whole_file(path, message))?;
+    pub fn apply(&self, path: &Path, particles: &mut Particles) -> Result<Applied, FileError> {
+        let types =
+            self.types.iter().map(|own| (format!("the type `{}`", own.name), &own.properties));
+        let styles =
+            self.styles.iter().map(|own| (format!("`{}`", own.selection.text()), &own.properties));
+        for (name, properties) in types.chain(styles) {
+            properties.check(&name).map_err(|message| FileError::whole_file(path, message))?;
+        }
+        if particles.orientation.is_none() && particles.first_frame.is_none() {
+            particles.orientation = Some(Orientation::of(particles));
         }
         add_numbers(particles, &self.typed_columns());
-        if let Some(selection) = self.select.as_ref().filter(|_| !particles.spheres.is_empty()) {
-            selection.apply(path, particles, self.allow_empty)?;
+        let mut applied = Applied { matched: vec![false; self.styles.len()], ..Applied::default() };
+        let mut assigned = Vec::new();
+        if !particles.spheres.is_empty() {
+            assigned = selected::assign(self, path, particles, &mut applied.matched)?;
         }
         if particles.spheres.is_empty() {
-            return Ok(match &self.coloring {
-                Coloring::Column(colors) => colors.legend_of_ends(particles.frame.unit),
-                Coloring::Usual | Coloring::Elements(_) => None,
-            });
+            let unit = particles.frame.unit;
+            applied.legends = self.column_colors().map(|own| own.legend_of_ends(unit)).collect();
+            return Ok(applied);
         }
-        let legend = match &self.coloring {
-            Coloring::Usual => None,
-            Coloring::Elements(scheme) => scheme.apply(path, particles).map(|()| None)?,
-            Coloring::Column(colors) => colors.apply(path, particles, self.allow_empty)?,
-        };
+        let painted = self.coloring.paint(path, particles, None, self.allow_empty)?;
+        if let Some(Painted { colors, legend, warnings }) = painted {
+            particles.spheres.color = colors;
+            particles.frame.warnings.extend(warnings);
+            if matches!(self.coloring, Coloring::Column(_)) {
+                applied.legends.push(legend);
+            }
+        }
+        selected::color(&assigned, path, particles, self.allow_empty, &mut applied)?;
         if let Some(arrows) = &self.arrows {
             arrows.apply(path, particles)?;
         }
@@ -153,21 +207,28 @@ impl ParticleStyle {
             );
             particles.frame.warnings.push(warning);
         }
-        let usual = if has_bonds { Model::BallAndStick } else { Model::SpaceFilling };
-        self.model.unwrap_or(usual).apply(particles, self.bond_radius);
-        let table = &particles.frame.kinds.table;
-        let known =
-            |style: &&TypeStyle| !self.allow_empty || style.check_known(path, table).is_ok();
-        let types: Vec<&TypeStyle> = self.types.iter().filter(known).collect();
-        types.iter().try_for_each(|style| style.apply(path, particles))?;
-        types.iter().try_for_each(|style| style.apply_material(path, particles))?;
-        let by_type = types.iter().filter_map(|style| Some((style, style.opacity?)));
-        let by_type: Vec<_> = by_type
-            .map(|(style, opacity)| Ok((style.rows(path, particles)?, opacity)))
-            .collect::<Result<_, FileError>>()?;
-        let (opacity, select) = (self.opacity.as_ref(), self.translucent.as_ref());
-        opacity::apply(path, particles, opacity, select, by_type.into_iter())?;
-        Ok(legend)
+        let asks_for_bonds = self.bonds.is_some() || self.draws_crystal(particles);
+        let usual =
+            if has_bonds && asks_for_bonds { Model::BallAndStick } else { Model::SpaceFilling };
+        let base = self.model.unwrap_or(usual);
+        selected::shape(&assigned, particles, base, self.bond_radius);
+        selected::set_materials(&assigned, particles);
+        selected::set_opacities(&assigned, path, particles)?;
+        Ok(applied)
+    }
+
+    /// Checks that every selection with a style of its own held a particle of a frame: `matched` is as in [`Applied`], of all
+    /// frames.
+    ///
+    /// # Errors
+    ///
+    /// One held none.
+    pub fn check_matched(&self, path: &Path, matched: &[bool]) -> Result<(), FileError> {
+        let idle = self.styles.iter().zip(matched).find(|(_, matched)| !**matched);
+        idle.map_or(Ok(()), |(style, _)| {
+            let message = format!("no particle of a frame is styled: `{}`", style.selection.text());
+            Err(FileError::whole_file(path, message))
+        })
     }
 
     /// Checks that every type with a style of its own is in one of the frames that share these names.

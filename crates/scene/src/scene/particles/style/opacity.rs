@@ -3,7 +3,6 @@
 use super::columns::numbers;
 use crate::scene::FileError;
 use crate::scene::particles::Particles;
-use crate::scene::particles::select::Selection;
 use std::collections::HashMap;
 use std::path::Path;
 use std::str::FromStr;
@@ -63,7 +62,7 @@ impl FromStr for Opacity {
 
 impl Opacity {
     /// Returns the opacity of each particle.
-    fn values(&self, path: &Path, particles: &Particles) -> Result<Vec<f64>, FileError> {
+    pub(super) fn values(&self, path: &Path, particles: &Particles) -> Result<Vec<f64>, FileError> {
         let (name, [low, high]) = match self {
             Self::Number(number) => return Ok(vec![*number; particles.spheres.len()]),
             Self::Column { name, ends } => (name, *ends),
@@ -77,37 +76,8 @@ impl Opacity {
     }
 }
 
-/// Gives particles their opacities: those of `opacity` to those that are selected, and then those of types, `by_type`, as pairs
-/// of rows and opacity.
-pub(super) fn apply(
-    path: &Path,
-    particles: &mut Particles,
-    opacity: Option<&Opacity>,
-    select: Option<&Selection>,
-    by_type: impl Iterator<Item = (Vec<usize>, f64)>,
-) -> Result<(), FileError> {
-    let count = particles.spheres.len();
-    let mut all = Vec::new();
-    if opacity.is_some() || select.is_some() {
-        let mut given = opacity.unwrap_or(&Opacity::Number(GHOST)).values(path, particles)?;
-        if let Some(select) = select {
-            let chosen = select.chosen(particles)?;
-            (0..count).filter(|&row| !chosen[row]).for_each(|row| given[row] = 1.0);
-        }
-        all = given.into_iter().map(Some).collect();
-    }
-    for (rows, opacity) in by_type {
-        all.resize(count, None);
-        for row in rows {
-            all[row] = Some(opacity);
-        }
-    }
-    split_materials(particles, &all);
-    Ok(())
-}
-
 /// Gives each opacity of each material a row of the materials; no opacities leave all as they are.
-fn split_materials(particles: &mut Particles, opacities: &[Option<f64>]) {
+pub(super) fn split_materials(particles: &mut Particles, opacities: &[Option<f64>]) {
     if opacities.is_empty() {
         return;
     }

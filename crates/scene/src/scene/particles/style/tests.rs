@@ -17,8 +17,8 @@ fn apply(content: &str, style: &ParticleStyle) -> Result<(Particles, Option<Lege
     std::fs::write(&path, content).expect("a file");
     let columns = Columns { wanted: style.columns(), ..Columns::default() };
     let mut particles = read(&path, &ReadOptions { columns, ..ReadOptions::default() })?;
-    let legend = style.apply(&path, &mut particles)?;
-    Ok((particles, legend))
+    let applied = style.apply(&path, &mut particles)?;
+    Ok((particles, applied.legend().cloned()))
 }
 
 fn by(column: &str) -> ColumnColors {
@@ -217,14 +217,13 @@ fn unknown_types_are_reported_with_known_ones() {
         ("N", "expected a type and its style"),
         ("N:", "expected a type and its style"),
         ("N:radius=0", "`0` is not a valid radius"),
-        ("N:color=rde", "`rde` is not a valid color"),
-        ("N:color=steelbleu", "did you mean `steelblue`"),
+        ("N:color=#rde", "`#rde` is not a valid color"),
         ("N:material=wood", "materials are: lambertian, plastic"),
         ("N:material=Glass", "did you mean `glass`"),
         ("N:colour=red", "did you mean `color`"),
-        ("N:opacity=1.5", "`1.5` is not a valid opacity"),
-        ("N:opacity=nan", "`nan` is not a valid opacity"),
-        ("N:size=1", "`size` is not radius, color, material, opacity or element"),
+        ("N:opacity=1.5", "`1.5` is not between 0 and 1"),
+        ("N:opacity=nan", "`nan` is not between 0 and 1"),
+        ("N:size=1", "`size` is no property; properties are: model"),
     ] {
         let error = text.parse::<TypeStyle>().expect_err(text);
         assert!(error.contains(expected), "{text}: {error}");
@@ -235,10 +234,12 @@ fn unknown_types_are_reported_with_known_ones() {
 fn numbers_out_of_range_are_refused() {
     for bad in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
         let usual = || TypeStyle { name: "O".to_owned(), ..TypeStyle::default() };
-        let mut style = vec![("radius", TypeStyle { radius: Some(bad), ..usual() })];
+        let properties = |properties| TypeStyle { properties, ..usual() };
+        let radius = Properties { radius: Some(bad), ..Properties::default() };
+        let mut style = vec![("radius", properties(radius))];
         if bad != 0.0 {
-            let color = Some(Rgb::new(0.5, bad as f32, 0.5));
-            style.push(("color", TypeStyle { color, ..usual() }));
+            let color = Some(Coloring::Uniform(Rgb::new(0.5, bad as f32, 0.5)));
+            style.push(("color", properties(Properties { color, ..Properties::default() })));
         }
         for (name, style) in style {
             let style = ParticleStyle { types: vec![style], ..ParticleStyle::default() };

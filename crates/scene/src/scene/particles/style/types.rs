@@ -1,9 +1,10 @@
 //! Styles of single types of particles.
 
-use crate::color::{self, Rgb};
-use crate::scene::particles::spheres::common_color;
+use super::Properties;
+use super::properties::entries;
+use crate::color::Rgb;
 use crate::scene::particles::{Element, Kind, Particles};
-use crate::scene::{ConductorFresnel, FileError, Material, NamedMaterial};
+use crate::scene::{ConductorFresnel, FileError, Material};
 use crate::suggest;
 use std::path::Path;
 use std::str::FromStr;
@@ -54,6 +55,20 @@ impl TypeMaterial {
         found.map(|(_, material)| *material)
     }
 
+    /// Returns the material with this name.
+    ///
+    /// # Errors
+    ///
+    /// There is none; the names.
+    pub fn of_word(name: &str) -> Result<Self, String> {
+        let found = Self::ALL.iter().find(|(own, _)| *own == name);
+        found.map(|(_, material)| *material).ok_or_else(|| {
+            let names = Self::ALL.map(|(name, _)| name);
+            let help = suggest::help(name, names.into_iter(), "materials are");
+            format!("unknown material `{name}`; {help}")
+        })
+    }
+
     /// Converts to the scene's material; an emitter emits light of this color.
     pub(in crate::scene) fn material(self, color: Rgb) -> Material {
         let albedo = Rgb::splat(ALBEDO);
@@ -72,19 +87,13 @@ impl TypeMaterial {
     }
 }
 
-/// The style of a type of particles, which overrides all other choices.
+/// The style of a type of particles: a short form of a style of the selection of the type.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TypeStyle {
     /// The type's name, or else the symbol of its element.
     pub name: String,
-    /// The radius, more than 0, in the scene's unit.
-    pub radius: Option<f64>,
-    /// The linear color, each channel 0 to 1.
-    pub color: Option<Rgb>,
-    /// The material.
-    pub material: Option<TypeMaterial>,
-    /// The opacity, 0 to 1.
-    pub opacity: Option<f64>,
+    /// The properties.
+    pub properties: Properties,
     /// The element, by which radii, colors and bonds are found; it must be known as the file is read:
     /// [`ReadOptions::elements`](crate::scene::particles::ReadOptions::elements).
     pub element: Option<Element>,
@@ -93,41 +102,27 @@ pub struct TypeStyle {
 impl FromStr for TypeStyle {
     type Err = String;
 
-    /// Parses `NAME:radius=R,color=#rrggbb,material=NAME,opacity=A,element=O`, in which entries may be missing.
+    /// Parses `NAME:radius=R,color=#rrggbb,material=NAME,opacity=A,element=O`: any of the [`Properties`], and the element.
     fn from_str(text: &str) -> Result<Self, String> {
         let usage =
             "expected a type and its style, as in Na:radius=1.2,color=#ab5cf2,material=glass";
-        let (name, entries) = text.rsplit_once(':').ok_or(usage)?;
-        let mut style = Self { name: name.to_owned(), ..Self::default() };
-        for entry in entries.split(',') {
-            let (key, value) = entry.split_once('=').ok_or(usage)?;
-            match key.trim() {
-                "radius" => style.radius = Some(radius(value.trim())?),
-                "color" => style.color = Some(color::of_name(value.trim())?),
-                "material" => style.material = Some(material(value.trim())?),
-                "opacity" => style.opacity = Some(opacity(value.trim())?),
-                "element" => style.element = Some(element(value.trim())?),
-                other => {
-                    let names = ["radius", "color", "material", "opacity", "element"];
-                    let near = suggest::question(other, names);
-                    return Err(format!(
-                        "`{other}` is not radius, color, material, opacity or element{near}"
-                    ));
-                }
+        // Names may hold colons; so may opacities of columns.
+        let is_end = |at: &usize| entries(&text[at + 1..]).is_ok_and(|found| !found.is_empty());
+        let mut colons = text.match_indices(':').map(|(at, _)| at);
+        let at = colons.clone().find(is_end).or_else(|| colons.next_back()).ok_or(usage)?;
+        let mut style = Self { name: text[..at].to_owned(), ..Self::default() };
+        let found = entries(&text[at + 1..]).map_err(|_| usage)?;
+        if found.is_empty() {
+            return Err(usage.to_owned());
+        }
+        for (name, value) in found {
+            match name {
+                "element" => style.element = Some(element(value)?),
+                _ => style.properties.set(name, value)?,
             }
         }
         Ok(style)
     }
-}
-
-fn radius(text: &str) -> Result<f64, String> {
-    let radius = text.parse().ok().filter(|radius| *radius > 0.0 && *radius < f64::INFINITY);
-    radius.ok_or_else(|| format!("`{text}` is not a valid radius: write a number greater than 0"))
-}
-
-fn opacity(text: &str) -> Result<f64, String> {
-    let opacity = text.parse().ok().filter(|opacity| (0.0..=1.0).contains(opacity));
-    opacity.ok_or_else(|| format!("`{text}` is not a valid opacity: write a number from 0 to 1"))
 }
 
 fn element(text: &str) -> Result<Element, String> {
@@ -135,81 +130,7 @@ fn element(text: &str) -> Result<Element, String> {
         .ok_or_else(|| format!("`{text}` is not an element: write its symbol, as in O"))
 }
 
-fn material(text: &str) -> Result<TypeMaterial, String> {
-    let found = TypeMaterial::ALL.iter().find(|(name, _)| *name == text);
-    found.map(|(_, material)| *material).ok_or_else(|| {
-        let names = TypeMaterial::ALL.map(|(name, _)| name);
-        let help = suggest::help(text, names.into_iter(), "materials are");
-        format!("unknown material `{text}`; {help}")
-    })
-}
-
 impl TypeStyle {
-    /// Checks that radius and color are in their ranges.
-    pub(super) fn check(&self) -> Result<(), String> {
-        let Self { name, radius, color, material: _, opacity, element: _ } = self;
-        if let Some(opacity) = opacity.filter(|opacity| !(0.0..=1.0).contains(opacity)) {
-            return Err(format!("`opacity` of the type `{name}` is {opacity}, but must be 0 to 1"));
-        }
-        if let Some(radius) = radius.filter(|radius| !(*radius > 0.0 && radius.is_finite())) {
-            let must = "but must be finite and more than 0";
-            return Err(format!("`radius` of the type `{name}` is {radius}, {must}"));
-        }
-        let valid = |color: &Rgb| (0..3).all(|channel| (0.0..=1.0).contains(&color[channel]));
-        match color.filter(|color| !valid(color)) {
-            Some(color) => {
-                Err(format!("`color` of the type `{name}` is {color}, but must be 0 to 1"))
-            }
-            None => Ok(()),
-        }
-    }
-
-    /// Sets radii and colors of the spheres of this type.
-    pub(super) fn apply(&self, path: &Path, particles: &mut Particles) -> Result<(), FileError> {
-        let rows = self.rows(path, particles)?;
-        let spheres = &mut particles.spheres;
-        if let Some(radius) = self.radius {
-            for &row in &rows {
-                spheres.radius[row] = radius;
-            }
-        }
-        if let Some(color) = self.color {
-            let count = spheres.len();
-            spheres.color.resize(count, Rgb::ONE);
-            for &row in &rows {
-                spheres.color[row] = color;
-            }
-        }
-        Ok(())
-    }
-
-    /// Sets the material of the spheres of this type, which have their final colors.
-    pub(super) fn apply_material(
-        &self,
-        path: &Path,
-        particles: &mut Particles,
-    ) -> Result<(), FileError> {
-        let Some(material) = self.material else { return Ok(()) };
-        let rows = self.rows(path, particles)?;
-        let color = common_color(&particles.spheres, rows.iter().copied());
-        let name = format!("{}: {}", self.name, material.name());
-        let material = material.material(color);
-        let known = particles.materials.iter().any(|own| own.name == name);
-        let row = particles.material_names.iter().position(|own| known && *own == name);
-        let row = row.unwrap_or(particles.material_names.len()) as u32;
-        let spheres = &mut particles.spheres;
-        let count = spheres.len();
-        spheres.material.resize(count, 0);
-        for sphere in rows {
-            spheres.material[sphere] = row;
-        }
-        if !known {
-            particles.material_names.push(name.clone());
-            particles.materials.push(NamedMaterial { name, material });
-        }
-        Ok(())
-    }
-
     /// Returns the spheres of this type.
     pub(super) fn rows(&self, path: &Path, particles: &Particles) -> Result<Vec<usize>, FileError> {
         let kinds = &particles.frame.kinds;

@@ -117,7 +117,7 @@ fn faults_are_reported_at_their_place() {
         ("spin up", "spin: no column is named `spin`"),
         ("same spin as protein", "same spin as protein: no column is named `spin`"),
         ("name XX", "none of its 15 particles is selected no particle has `XX`"),
-        ("prtein", "prtein: expected a comparison"),
+        ("prtein", "prtein: `prtein` is no condition; did you mean `protein`?"),
         ("protein > 5", "protein: no column is named `protein`"),
     ] {
         let fault = select_ids(condition).expect_err(condition);
