@@ -15,6 +15,9 @@ const SAMPLE: usize = 4096;
 /// Maximum thickness of a single layer, in median diameters.
 const LAYER: f64 = 1.1;
 
+/// Minimum width of a wavy layer, whose centers are within a diameter, in its thicknesses.
+const WAVY: f64 = 10.0;
+
 /// Minimum width of a vacuum, as a fraction of the cell's edge and in median radii.
 const VACUUM: f64 = 0.25;
 const VACUUM_RADII: f64 = 4.0;
@@ -111,7 +114,7 @@ impl Orientation {
         let found = || {
             let slab = || Some((slab(cell?)?, UpReason::Slab));
             let vacuum = || Some((vacuum(cell?, gaps?, radius)?, UpReason::Vacuum));
-            let bed = || Some((bed(spheres, radius)?, UpReason::Bed));
+            let bed = || Some((bed(spheres, cell, radius)?, UpReason::Bed));
             slab().or_else(vacuum).or_else(bed)
         };
         let (up, reason) = match front {
@@ -172,7 +175,11 @@ fn layer(spheres: &Spheres, radius: f64) -> Option<Axis> {
     }
     let [low, high] = bounds_of_centers(spheres);
     let size = high - low;
-    let thin = |axis: usize| size[axis] < 2.0 * (LAYER - 1.0) * radius;
+    let thin = |axis: usize| {
+        let width = size[(axis + 1) % 3].min(size[(axis + 2) % 3]);
+        let is_wavy = size[axis] < 2.0 * radius && width > WAVY * size[axis];
+        size[axis] < 2.0 * (LAYER - 1.0) * radius || is_wavy
+    };
     let wide = |axis: usize| size[axis] > 4.0 * radius;
     match [0, 1, 2].map(thin) {
         [false, false, true] if wide(0) && wide(1) => Some(Axis::Z),
@@ -265,14 +272,23 @@ fn is_full(spheres: &Spheres, cell: &Cell, gaps: Option<[f64; 3]>) -> bool {
 }
 
 /// Returns the direction away from the floor of a bed: of the six sides of the box of all spheres, pairs
-/// of walls are alike, but a floor is touched everywhere and a free surface is not.
-fn bed(spheres: &Spheres, radius: f64) -> Option<Axis> {
+/// of walls are alike, but a floor is touched everywhere and a free surface is not. A border over which the cell is
+/// periodic is no floor.
+fn bed(spheres: &Spheres, cell: Option<&Cell>, radius: f64) -> Option<Axis> {
     if spheres.len() < BED {
         return None;
     }
     let walls = [0, 1, 2].map(|axis| touched(spheres, axis, radius));
     let is_floor = |floor: f64, opposite: f64| floor >= FLOOR && opposite <= SURFACE;
-    let beds = [Axis::X, Axis::Y, Axis::Z].into_iter().zip(walls).filter_map(|(axis, ends)| {
+    let is_periodic = |axis: Axis| {
+        cell.is_some_and(|cell| {
+            let mut edges = cell.vectors.iter().zip(cell.periodic);
+            edges.any(|(edge, periodic)| periodic && Axis::nearest(edge.abs()) == Some(axis))
+        })
+    };
+    let walls = [Axis::X, Axis::Y, Axis::Z].into_iter().zip(walls);
+    let walls = walls.filter(|(axis, _)| !is_periodic(*axis));
+    let beds = walls.filter_map(|(axis, ends)| {
         let [low, high] = ends;
         match (is_floor(low, high), is_floor(high, low)) {
             (true, _) => Some(axis),
@@ -369,6 +385,12 @@ mod tests {
             let bed = particles(Format::Csv, bed_of_spheres().map(turned(up)));
             assert_eq!(found(&bed), (up, UpReason::Bed));
         }
+        // Over a periodic border there is no floor.
+        for (periodic, expected) in [([false; 3], true), ([true; 3], false)] {
+            let mut bed = particles(Format::Csv, bed_of_spheres());
+            bed.frame.cell = Some(cell(DVec3::new(12.0, 12.0, 7.0), periodic));
+            assert_eq!(found(&bed).1 == UpReason::Bed, expected, "{periodic:?}");
+        }
         // Both ends of a block are flat.
         let block = particles(Format::Csv, lattice([12, 12, 6]));
         assert_eq!(found(&block), (Axis::Z, UpReason::Convention(Format::Csv)));
@@ -443,6 +465,12 @@ mod tests {
                 assert_eq!(direction == Camera::fit_direction(up), is_normal, "{normal:?} {up:?}");
             }
         }
+        let wave = |height: f64| {
+            let lift = move |p: DVec3| p + DVec3::Z * (height * (0.7 * p.x).sin());
+            found(&particles(Format::Csv, lattice([20, 20, 1]).map(lift))).1
+        };
+        assert_eq!(wave(0.4), UpReason::Layer);
+        assert_ne!(wave(1.0), UpReason::Layer);
         // A flat molecule is one, too.
         assert_eq!(found(&particles(Format::Xyz, lattice([9, 9, 1]))), (Axis::Y, UpReason::Layer));
     }
