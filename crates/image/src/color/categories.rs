@@ -2,44 +2,26 @@
 
 use super::{Rgb, srgb};
 
-/// Number of distinct colors: ten hues, the same darker, and lighter.
-pub const CATEGORIES: usize = SHADES.len() * HUES.len();
+/// Number of distinct colors.
+pub const CATEGORIES: usize = COLORS.len();
 
-/// Ten colors that are distinguishable with any color vision, dark enough on white and light enough on
-/// black: Petroff, "Accessible Color Sequences for Data Visualization", 2021, arXiv:2107.02270.
+/// Thirty colors of which no two are near, for usual color vision, protanopia and deuteranopia: the least distances by
+/// CIEDE2000 are 12.7, 8.7 and 8.7, and 17.3, 11.9 and 12.6 among the first ten.
+///
+/// The first ten are those of Petroff, "Accessible Color Sequences for Data Visualization", 2021, arXiv:2107.02270. The others
+/// were found by a search, and are in an order in which each one is as far as possible from those before it.
 #[rustfmt::skip]
 #[allow(clippy::unreadable_literal, reason = "colors read as in the sRGB hex notation")]
-const HUES: [u32; 10] = [
-    0x3F90DA, 0xFFA90E, 0xBD1F01, 0x94A4A2, 0x832DB6, 0xA96B59, 0xE76300, 0xB9AC70, 0x717581,
-    0x92DADD,
+const COLORS: [u32; 30] = [
+    0x3F90DA, 0xFFA90E, 0xBD1F01, 0x94A4A2, 0x832DB6, 0xA96B59, 0xE76300, 0xB9AC70, 0x717581, 0x92DADD,
+    0x00483C, 0x54486C, 0x00C0FC, 0xF0E4C0, 0xF03CB4, 0x009C78, 0x780C00, 0x84003C, 0xC0E484, 0x1830FC,
+    0xD8F0E4, 0x3C6C30, 0xF0F048, 0x90C09C, 0x3C6C60, 0xFC9CC0, 0x3C2490, 0x1890A8, 0x006CFC, 0xB43C60,
 ];
-
-/// Fractions of a hue and of white, in linear light, that are mixed for a shade.
-const SHADES: [[f32; 2]; 3] = [[1.0, 0.0], [0.3, 0.0], [0.7, 0.3]];
 
 /// Returns the linear color of a category by its index from 0. Colors repeat from [`CATEGORIES`] on.
 pub fn category(index: usize) -> Rgb {
-    let [hue, white] = SHADES[index / HUES.len() % SHADES.len()];
-    srgb(HUES[index % HUES.len()]) * hue + Rgb::splat(white)
+    srgb(COLORS[index % COLORS.len()])
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn categories_differ_and_then_colors_repeat() {
-        for index in 0..CATEGORIES {
-            // The cube root is nearly as light as the eye takes it.
-            let lightness = |index| category(index).to_array().map(f32::cbrt);
-            let differences = (0..index).map(|other| {
-                let pairs = lightness(index).into_iter().zip(lightness(other));
-                pairs.map(|(a, b)| (a - b).powi(2)).sum::<f32>().sqrt()
-            });
-            let least = differences.fold(f32::INFINITY, f32::min);
-            assert!(least > 0.08, "{index}: {least}");
-            assert_eq!(category(index + CATEGORIES), category(index));
-        }
-        assert_eq!(category(0), srgb(0x3F_90_DA));
-    }
-}
+mod tests;
