@@ -118,10 +118,11 @@ pub mod scene {
         #[doc(inline)]
         pub use spherule_render::scene::particles::{
             Applied, ArrowCentering, ArrowSizes, ArrowStyle, Arrows, BondRules, BondSource, Bonds,
-            Cell, Coloring, ColumnColors, ElementColors, FirstFrame, Legend, Model, Opacity,
-            Orientation, ParticleStyle, Particles, PeriodicError, Properties, SelectedStyle,
-            Selection, Shapes, Trails, TrajectoryReader, TypeMaterial, TypeStyle, UpReason,
-            VectorColumns, accept_radii_expression, map_named, of_frame, of_frame_in, read,
+            Cell, ColorEnd, ColorEnds, Coloring, ColumnColors, ColumnSummary, ElementColors,
+            FirstFrame, Legend, Model, NumberColors, Opacity, Orientation, ParticleStyle,
+            Particles, PeriodicError, Properties, SelectedStyle, Selection, Shapes, SharedColors,
+            Trails, TrajectoryReader, TypeMaterial, TypeStyle, UpReason, VectorColumns,
+            accept_radii_expression, of_frame, of_frame_in, read,
         };
     }
 }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from .sections import Sections
 
@@ -47,8 +47,9 @@ if TYPE_CHECKING:
         select: str
         colors: str
         color_by: str
-        color_map: ColorMap
-        color_range: tuple[float, float]
+        color_map: ColorMap | Literal["categories"]
+        color_range: tuple[float | str, float | str]
+        color_title: str
         color_log: bool
         color_bar: bool | Position | ColorBar
         label_of_values: str
@@ -97,7 +98,8 @@ PARTICLES = frozenset("radius semi_axes orientation color kinds materials column
 
 #: Arguments that say how particles are drawn.
 STYLE = frozenset(
-    "values radius_scale select colors color_by color_map color_range color_log color_bar label_of_values types model "
+    "values radius_scale select colors color_by color_map color_range color_title color_log color_bar "
+    "label_of_values types model "
     "bonds bond_radius opacity translucent hide styles arrows arrow_scale arrow_radius arrow_color arrow_center preset background view look_at zoom roll up wrap replicate show_cell slices slice_mode".split()
 )
 

@@ -41,7 +41,10 @@ class Scene:
         color_by: The name of a column that gives the colors, or an expression over columns, as in
             ``"norm(velocity)"`` or ``"c_pe / mass"``: ``+ - * / ^``, ``abs``, ``sqrt``, ``exp``, ``log``, ``log10``,
             ``min``, ``max`` and ``norm``.
-        color_map, color_range, color_log: The map, the numbers at its ends, and whether it is logarithmic.
+        color_map, color_range, color_log: The map, its ends, and whether it is logarithmic. An end is a number, a
+            percentile of the values as in ``("2%", "98%")``, or ``"auto"``. The map ``"categories"`` is a color for each
+            integer; at most 12 different integers of labels such as ``cluster`` or ``mol`` have them without it.
+        color_title: The title of the color bar; ``v_x`` and ``m^2`` have subscripts and superscripts.
         color_bar: True or a position: draw the bar of these colors. A dict is the section of a scene file.
         colors: ``"jmol"`` or ``"cpk"``: colors of elements.
         types: For names of types or elements: ``{"radius": 1.2, "color": "gold", "material": "metal"}``, and
@@ -316,6 +319,9 @@ def _columns(particles: Any, given: dict[str, Any], sections: Mapping[str, Any])
         # By this name they are found before any other column.
         table["numbers"] = [(name, column), *(own for own in table["numbers"] if own[0] != name)]
         given["color_by"] = name
+        given.setdefault("color_title", name)
+        # Numbers that are given as values are for a map.
+        given.setdefault("color_map", "viridis")
     arrows = given.get("arrows")
     if arrows is not None and not isinstance(arrows, str) and np.ndim(arrows) > 1:
         vectors = _arrays.table("arrows", arrows)
@@ -364,11 +370,11 @@ def _style(given: Mapping[str, Any]) -> dict[str, Any]:
         types.append((name, radius, color, material, opacity))
     ends = given.get("color_range")
     if ends is not None:
-        low, high = _values.items("color_range", ends, _values.number, 2)
-        if not low <= high:
+        low, high = _values.items("color_range", ends, _end, 2)
+        if not (isinstance(low, str) or isinstance(high, str) or low <= high):
             raise Error(f"`color_range` is {low:g} to {high:g}, but the lower number comes first")
-        ends = (low, high)
-    names = ("select", "hide", "colors", "color_by", "color_map", "model", "bonds", "translucent")
+        ends = ",".join(end if isinstance(end, str) else repr(end) for end in (low, high))
+    names = ("select", "hide", "colors", "color_by", "color_map", "color_title", "model", "bonds", "translucent")
     style: dict[str, Any] = {name: _optional(given, name, _values.text) for name in names}
     through = given.get("opacity")
     if not (through is None or isinstance(through, str)):
@@ -413,6 +419,16 @@ def _selected(select: str, look: Any) -> tuple[str, tuple[float, ...] | None]:
             value = repr(_values.number(at, value))
         words.append(f"{key.replace('_', '-')}={value}")
     return f"{select}: {' '.join(words)}", color
+
+
+def _end(name: str, value: Any) -> float | str:
+    """An end of a color map: a number, a percentile, or ``auto``."""
+    if not isinstance(value, str):
+        return _values.number(name, value)
+    percent = value.strip().removesuffix("%").strip()
+    if value.strip() == "auto" or value.strip().endswith("%") and percent.replace(".", "", 1).isdecimal():
+        return value.strip()
+    raise Error(f'`{name}` is {value!r}, but must be a number, a percentile as in "2%", or "auto"')
 
 
 def _arrows(given: Mapping[str, Any]) -> dict[str, Any]:

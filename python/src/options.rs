@@ -12,9 +12,9 @@ use spherule::particles::{
     Radii, ReadOptions, TextColumn,
 };
 use spherule::scene::particles::{
-    ArrowCentering, ArrowStyle, BondSource, Coloring, ColumnColors, ElementColors, Model, Opacity,
-    ParticleStyle, Properties, SelectedStyle, Selection, TypeMaterial, TypeStyle,
-    accept_radii_expression, map_named,
+    ArrowCentering, ArrowStyle, BondSource, ColorEnds, Coloring, ColumnColors, ElementColors,
+    Model, Opacity, ParticleStyle, Properties, SelectedStyle, Selection, TypeMaterial, TypeStyle,
+    accept_radii_expression,
 };
 use std::str::FromStr;
 
@@ -70,7 +70,9 @@ pub(crate) struct StyleTable {
     colors: Option<String>,
     color_by: Option<String>,
     color_map: Option<String>,
-    color_range: Option<[f64; 2]>,
+    /// Both ends, as in `2%,98%`.
+    color_range: Option<String>,
+    color_title: Option<String>,
     color_log: bool,
     model: Option<String>,
     bonds: Option<String>,
@@ -192,16 +194,22 @@ impl StyleTable {
         let arrows = self.arrows().map_err(fault)?;
         let coloring = match (self.color_by, self.colors.as_deref()) {
             (Some(column), _) => {
-                let (map, reversed) = match self.color_map.as_deref() {
-                    None => (None, false),
-                    Some(name) => {
-                        let (map, reversed) = map_named(name).map_err(fault)?;
-                        (Some(map), reversed)
-                    }
+                let ends = self.color_range.as_deref().map(ColorEnds::from_str).transpose();
+                let mut colors = ColumnColors {
+                    column,
+                    ends: ends
+                        .map_err(|why| fault(format!("`color_range`: {why}")))?
+                        .unwrap_or_default(),
+                    title: self.color_title,
+                    ..ColumnColors::default()
                 };
-                let spacing = if self.color_log { Spacing::Logarithmic } else { Spacing::Linear };
-                let ends = self.color_range;
-                Coloring::Column(ColumnColors { column, map, reversed, ends, spacing })
+                if self.color_log {
+                    colors.spacing = Spacing::Logarithmic;
+                }
+                if let Some(name) = &self.color_map {
+                    colors.set_map(name).map_err(fault)?;
+                }
+                Coloring::Column(colors)
             }
             (None, None) => Coloring::Usual,
             (None, Some("jmol")) => Coloring::Elements(ElementColors::Jmol),

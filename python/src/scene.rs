@@ -168,6 +168,9 @@ impl Scene {
                 let first_frame = first_frame.map(|first| first.first_frame(frame.format));
                 let framed = request.style.framed.take();
                 request.style = ParticleStyle { framed, ..style.style(py, options.radius_scale)? };
+                if request.annotations.color_bar.is_some() {
+                    request.style.coloring.prefer_map();
+                }
                 let sections = compose::Sections { scene: given, keys: sections.keys };
                 let work = Work { frame, first_frame, options, request, sections };
                 // Copies and orientation of many particles take a while.

@@ -23,6 +23,12 @@ GROUPS = [
     [
         ({"color_by": "tags"}, ["--color-by", "tags"]),
         ({"color_by": "z", "color_bar": "left"}, ["--color-by", "z", "--color-bar", "left"]),
+        ({"color_by": "tags", "color_map": "categories"}, ["--color-by", "tags", "--color-map", "categories"]),
+        (
+            {"color_by": "z", "color_range": ("10%", "auto"), "color_bar": "left", "color_title": "z_i (m^2)"},
+            ["--color-by", "z", "--color-range", "10%,auto", "--color-bar", "left", "--color-title", "z_i (m^2)"],
+        ),
+        ({"color_by": "x", "color_range": (-1, 3)}, ["--color-by", "x", "--color-range", "-1,3"]),
         ({"color_by": "x", "color_map": "magma_r"}, ["--color-by", "x", "--color-map", "magma_r"]),
         ({"colors": "cpk"}, ["--colors", "cpk"]),
     ],

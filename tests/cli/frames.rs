@@ -159,6 +159,55 @@ fn types_have_one_color_in_all_frames() {
     assert!(unknown.contains("no type is called `Q4`"), "{unknown}");
 }
 
+#[test]
+fn labels_and_percentiles_are_those_of_all_frames() {
+    let folder = Folder::new();
+    let head = "2\nProperties=species:S:1:pos:R:3:mol:I:1:q:R:1\n";
+    let frame = |left: u32, right: u32, q: [u32; 2]| {
+        format!("{head}C 0 0 0 {left} {}\nC 4 0 0 {right} {}\n", q[0], q[1])
+    };
+    let frames = [frame(5, 9, [1, 2]), frame(9, 9, [3, 5]), frame(7, 9, [6, 9])];
+    folder.write("a.xyz", &frames.concat());
+    let shown = TINY.replace("--spp 4", "--spp 64");
+    let line =
+        format!("render a.xyz --frame all --radii 1 --view z {shown} --color-by mol -o a.png");
+    stderr(&folder, 0, &line);
+    let middle = |frame: u32, x: u32| {
+        let image = Image::read(folder.path(&format!("a-000{frame}.png"))).expect("a picture");
+        image.pixel(x, 12).expect("a pixel")
+    };
+    let similar = |a: [f32; 3], b: [f32; 3]| (0..3).all(|c| (a[c] - b[c]).abs() < 0.1);
+    let [lefts, rights] = [11, 28].map(|x| [0, 1, 2].map(|frame| middle(frame, x)));
+    assert!(similar(rights[0], rights[1]) && similar(rights[0], rights[2]), "{rights:?}");
+    for (a, b) in [(0, 1), (0, 2), (1, 2)] {
+        assert!(!similar(lefts[a], lefts[b]), "{lefts:?}");
+    }
+    // A legend has the labels of all frames.
+    let listed =
+        "render a.xyz --frame all --color-by mol --legend --size 200x150 --spp 1 -q -o l.svg";
+    stderr(&folder, 0, listed);
+    for frame in ["l-0000.svg", "l-0002.svg"] {
+        let svg = text(&folder.read(frame));
+        for name in ["mol", "5", "7", "9"] {
+            assert!(svg.contains(&format!(">{name}</text>")), "{frame}: {name}");
+        }
+    }
+    let range = |options: &str| {
+        let line = format!("render a.xyz --frame all --color-by q {TINY} {options} -o r.png");
+        stderr(&folder, 0, &line);
+        let of = |frame: u32| {
+            let path = folder.path(&format!("r-000{frame}.png"));
+            read_metadata(path).expect("a picture").value("color_range").map(str::to_owned)
+        };
+        assert_eq!(of(0), of(1));
+        of(0)
+    };
+    // Of 1, 2, 3, 5, 6 and 9.
+    assert_eq!(range("--color-range 25%,auto").as_deref(), Some("2.25,9"));
+    assert_eq!(range("--color-range 0,50%").as_deref(), Some("0,4"));
+    assert_eq!(range("--color-map categories"), None);
+}
+
 /// Returns frames of particles of one type at these positions, each with its own title.
 fn trajectory(frames: &[&[[f64; 3]]]) -> String {
     let row = |[x, y, z]: &[f64; 3]| format!("C {x} {y} {z}\n");

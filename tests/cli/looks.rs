@@ -108,6 +108,27 @@ fn color_bars_are_written_beside_the_picture() {
 }
 
 #[test]
+fn titles_have_subscripts_and_percentiles_arrows() {
+    let folder = folder();
+    let bar = |options: &[&str]| {
+        let args = ["dust.csv", "--color-by", "q", "--color-bar", "b.svg"];
+        folder.picture("dust.ppm", &[&args[..], options].concat());
+        text(&folder.read("b.svg"))
+    };
+    let shapes = |svg: &str| svg.matches("<path").count() + svg.matches("<polygon").count();
+    let plain = bar(&[]);
+    let titled = bar(&["--color-title", "v_{max} (m/s)"]);
+    for part in [">v</text>", ">max</text>", "> (m/s)</text>"] {
+        assert!(titled.contains(part), "{titled}");
+    }
+    // -1, 0 and 4: the middle of -1 and 0, and of 0 and 4.
+    let robust = bar(&["--color-range", "25%,75%"]);
+    assert_eq!(robust, bar(&["--color-range", "-0.5,2"]));
+    assert_eq!(shapes(&robust), shapes(&plain) + 2, "{robust}");
+    assert_eq!(bar(&["--color-range", "0%,auto"]), plain);
+}
+
+#[test]
 fn invalid_looks_are_refused() {
     let folder = folder();
     for (args, code, message) in [
@@ -119,6 +140,14 @@ fn invalid_looks_are_refused() {
         (&["dust.csv", "--color-by", "elment"], 1, "did you mean `element`"),
         (&["dust.csv", "--type", "c:radius=1"], 1, "did you mean `C`"),
         (&["dust.csv", "--color-by", "q", "--color-range", "1"], 2, "the lower one first"),
+        (&["dust.csv", "--color-by", "q", "--color-range", "2%,101%"], 2, "the lower one first"),
+        (&["dust.csv", "--color-title", "a"], 2, "--color-by"),
+        (&["dust.csv", "--color-by", "q / 3", "--color-map", "categories"], 1, "are integers"),
+        (
+            &["dust.csv", "--color-by", "q", "--color-map", "categories", "--color-log"],
+            1,
+            "`q` is colored by categories",
+        ),
         (&["dust.csv", "--color-by", "q", "--colors", "cpk"], 2, "cannot be used with"),
         (&["dust.csv", "--color-by", "q", "--color-bar", "bar.exr"], 2, ".svg or .pdf"),
         (&["dust.csv", "--color-by", "note", "--color-bar", "bar.png"], 2, "a numeric column"),

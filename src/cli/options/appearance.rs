@@ -7,8 +7,9 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use spherule_render::color::{self, Map, Spacing};
 use spherule_render::graphics::Format;
 use spherule_render::scene::particles::{
-    ArrowCentering, ArrowStyle, BondSource, Coloring, ColumnColors, ElementColors, Legend, Model,
-    Opacity, ParticleStyle, SelectedStyle, Selection, TypeStyle, VectorColumns,
+    ArrowCentering, ArrowStyle, BondSource, ColorEnds, Coloring, ColumnColors, ElementColors,
+    Legend, Model, NumberColors, Opacity, ParticleStyle, SelectedStyle, Selection, TypeStyle,
+    VectorColumns,
 };
 use spherule_render::scene::{Anchor, Rgb};
 use spherule_render::suggest;
@@ -32,23 +33,29 @@ pub(in crate::cli) struct AppearanceArgs {
     colors: Option<Scheme>,
     /// Color by an expression, as in 'charge / mass' or 'norm(force)' (see --select); or by a column: of the file, or
     /// x, y, z, radius, type, element, id, index, coordination (number of bonds), cluster (connected particles, by
-    /// size) or speed (of vx, vy and vz): numbers by a color map, strings by a cycle of thirty colors. Names of other
-    /// programs are accepted, as for --select
+    /// size) or speed (of vx, vy and vz): numbers by a color map, strings by thirty colors in turn, and so are at most 12
+    /// different integers of labels such as cluster, coordination or mol. Names of other programs are accepted, as for --select
     #[arg(long, value_name = "EXPR", allow_hyphen_values = true)]
     color_by: Option<String>,
-    /// Color map for --color-by; append _r to reverse it, as in `viridis_r` [default: viridis]
+    /// Color map for --color-by; append _r to reverse it, as in `viridis_r`; or categories, a color for each integer, of which
+    /// there are thirty [default: viridis, or categories for at most 12 different integers of labels]
     #[arg(long, value_name = "MAP", requires = "color_by", value_parser = map())]
     color_map: Option<MapChoice>,
-    /// Values at the ends of the color map; values outside get the colors of the ends [default: auto, the
-    /// minimum and the maximum, in a sequence those of all frames]
+    /// Values at the ends of the color map; values outside get the colors of the ends, and arrows in the color bar. An end
+    /// is a number, a percentile of the values as in 2%,98%, or auto [default: auto, the minimum and the maximum; in a
+    /// sequence, values are those of all frames]
     #[arg(
         long,
         value_name = "LOW,HIGH|auto",
         requires = "color_by",
         allow_hyphen_values = true,
-        value_parser = ends
+        value_parser = |text: &str| text.parse::<ColorEnds>()
     )]
-    color_range: Option<Ends>,
+    color_range: Option<ColorEnds>,
+    /// Title of the color bar or legend, as in 'speed (m/s)'; v_x and m^2 have subscripts and superscripts, as has what is
+    /// between braces, v_{max} [default: the name of the column, with the unit if it is a length]
+    #[arg(long, value_name = "TEXT", requires = "color_by", allow_hyphen_values = true)]
+    color_title: Option<String>,
     /// Logarithmic color scale
     #[arg(long, requires = "color_by")]
     color_log: bool,
@@ -176,28 +183,33 @@ impl Scheme {
     }
 }
 
-/// Values at the ends of a color map; `None` for the range of the data.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Ends(Option<[f64; 2]>);
-
 /// Names of reversed maps, in the order of [`Map::ALL`].
 const REVERSED: [&str; 7] =
     ["viridis_r", "cividis_r", "inferno_r", "magma_r", "plasma_r", "turbo_r", "coolwarm_r"];
 
-/// A color map, which may be reversed.
+/// The name of colors of their own, instead of a color map.
+const CATEGORIES: &str = "categories";
+
+/// The colors of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct MapChoice {
-    map: Map,
-    reversed: bool,
+enum MapChoice {
+    /// A color for each integer.
+    Categories,
+    /// A color map, which may be reversed.
+    Map { map: Map, reversed: bool },
 }
 
 fn map() -> impl TypedValueParser<Value = MapChoice> {
     let names = Map::ALL.map(|map| PossibleValue::new(map.name()));
     let reversed = REVERSED.map(|name| PossibleValue::new(name).hide(true));
-    PossibleValuesParser::new(names.into_iter().chain(reversed)).try_map(|name| {
+    let names = names.into_iter().chain([PossibleValue::new(CATEGORIES)]).chain(reversed);
+    PossibleValuesParser::new(names).try_map(|name| {
+        if name == CATEGORIES {
+            return Ok(MapChoice::Categories);
+        }
         let row = REVERSED.iter().position(|own| *own == name);
         let map = row.map(|row| Map::ALL[row]).or_else(|| Map::named(&name));
-        let choice = |map| MapChoice { map, reversed: row.is_some() };
+        let choice = |map| MapChoice::Map { map, reversed: row.is_some() };
         map.map(choice).ok_or("not one of the names")
     })
 }
@@ -208,19 +220,6 @@ fn model() -> impl TypedValueParser<Value = Model> {
         let found = Model::ALL.iter().find(|(own, _)| *own == name);
         found.map(|(_, model)| *model).ok_or("not one of the names")
     })
-}
-
-/// `LOW,HIGH` or `auto`.
-fn ends(text: &str) -> Result<Ends, String> {
-    if text == "auto" {
-        return Ok(Ends(None));
-    }
-    let number = |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite());
-    let numbers = text.split_once(',').and_then(|(low, high)| Some([number(low)?, number(high)?]));
-    numbers
-        .filter(|[low, high]| low <= high)
-        .map(|ends| Ends(Some(ends)))
-        .ok_or_else(|| "give two numbers, the lower one first, as in -1,2.5, or auto".to_owned())
 }
 
 /// A position, perhaps after `inside:`, or a name that ends in `.png`, `.svg` or `.pdf`.
@@ -290,7 +289,10 @@ impl AppearanceArgs {
             lists::put(&mut list, "color_map", Some(format!("{}{reversed}", scale.map.name())));
             lists::put(&mut list, "color_range", Some(ends));
             lists::put(&mut list, "color_log", self.color_log.then_some(true));
+        } else if self.color_map == Some(MapChoice::Categories) {
+            lists::put(&mut list, "color_map", Some(CATEGORIES));
         }
+        lists::put(&mut list, "color_title", self.color_title.as_deref());
         lists::put(&mut list, "model", self.model.map(Model::name));
         lists::put(&mut list, "bond_radius", self.bond_radius);
         with_text::insert(&mut list, "bonds", &self.bonds);
@@ -322,13 +324,25 @@ impl AppearanceArgs {
 
     fn coloring(&self) -> Coloring {
         if let Some(column) = self.color_by.clone() {
-            return Coloring::Column(ColumnColors {
+            let (numbers, map, reversed) = match self.color_map {
+                None => (NumberColors::Auto, None, false),
+                Some(MapChoice::Categories) => (NumberColors::Categories, None, false),
+                Some(MapChoice::Map { map, reversed }) => (NumberColors::Map, Some(map), reversed),
+            };
+            let mut coloring = Coloring::Column(ColumnColors {
                 column,
-                map: self.color_map.map(|choice| choice.map),
-                reversed: self.color_map.is_some_and(|choice| choice.reversed),
-                ends: self.color_range.and_then(|Ends(ends)| ends),
+                numbers,
+                map,
+                reversed,
+                ends: self.color_range.unwrap_or_default(),
                 spacing: if self.color_log { Spacing::Logarithmic } else { Spacing::Linear },
+                title: self.color_title.clone(),
+                shared: None,
             });
+            if self.color_bar.is_some() {
+                coloring.prefer_map();
+            }
+            return coloring;
         }
         match self.colors {
             None => Coloring::Usual,
@@ -359,15 +373,6 @@ mod tests {
     fn every_map_can_be_reversed() {
         for (map, reversed) in Map::ALL.into_iter().zip(REVERSED) {
             assert_eq!(reversed, format!("{}_r", map.name()));
-        }
-    }
-
-    #[test]
-    fn color_ranges_are_two_numbers() {
-        assert_eq!(ends("-1, 2.5"), Ok(Ends(Some([-1.0, 2.5]))));
-        assert_eq!(ends("auto"), Ok(Ends(None)));
-        for text in ["", "1", "2,1", "1,inf", "nan,1", "1,2,3", "a,b"] {
-            assert!(ends(text).is_err(), "{text}");
         }
     }
 }

@@ -25,7 +25,8 @@ pub(in crate::cli) fn check_legend(
     if setup.color_bar.is_none() || legend.is_some() {
         return Ok(());
     }
-    let message = "--color-bar needs --color-by, or a color of --style, with a numeric column";
+    let message = "--color-bar needs --color-by, or a color of --style, with a numeric column and a color map; \
+                   --legend lists the colors of names";
     Err(Failure::usage("render", message))
 }
 

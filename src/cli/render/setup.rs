@@ -204,7 +204,8 @@ impl<'a> RenderSetup<'a> {
             Fault::File(error) => return error.into(),
             Fault::World(title, error) => return Failure::World(title, error),
             Fault::Legend { numeric: true } => {
-                "--legend needs colors that stand for names; use --color-bar for those of numbers"
+                "--legend needs colors that stand for names; use --color-bar for those of numbers, or --color-map \
+                 categories for a color for each integer"
             }
             Fault::Legend { numeric: false } => {
                 "--legend needs a particle file whose colors stand for elements, types or the texts of \

@@ -3,6 +3,7 @@
 use super::font::{LIGHT, PAPER, SizedFont, Surface};
 use super::wrap::wrap;
 use spherule_render::color::{Rgb, Tick, ticks};
+use spherule_render::graphics::unmarked;
 use spherule_render::image::tone::srgb_encode;
 use spherule_render::scene::particles::Legend;
 
@@ -25,7 +26,7 @@ pub(super) fn draw(font: &mut SizedFont, legend: &Legend, surface: &mut Surface,
     let ticks = ticks(&legend.scale.range, most);
     let numbers = ticks.iter().map(|tick| font.width(&tick.label)).max().unwrap_or(0);
     let room = surface.width / WIDEST;
-    let title = wrap(font, &legend.label, room.saturating_sub(2 * margin), 1).concat();
+    let title = wrap(font, &unmarked(&legend.label), room.saturating_sub(2 * margin), 1).concat();
     let width = (thick + gap + margin / 2 + numbers).max(font.width(&title)) + 2 * margin;
     let height = length + 2 * line + margin;
     if length < LEAST * line || height > bottom || width > room {

@@ -5,12 +5,14 @@
 //! system may have none.
 
 mod font;
+mod marks;
 mod page;
 mod pdf;
 mod raster;
 mod svg;
 
 pub use font::{CAP_HEIGHT, X_HEIGHT, text_width};
+pub use marks::{marked_width, unmarked};
 pub use page::{Format, Page, PageError};
 pub use svg::base64;
 
@@ -76,12 +78,17 @@ pub enum Align {
 impl Text {
     /// Returns the position of the text's beginning.
     fn start(&self) -> DVec2 {
+        self.start_of(text_width(&self.text, self.size))
+    }
+
+    /// Returns the position of the beginning of a text of this width.
+    fn start_of(&self, width: f64) -> DVec2 {
         let before = match self.align {
             Align::Start => 0.0,
             Align::Middle => 0.5,
             Align::End => 1.0,
         };
-        self.position - DVec2::X * (before * text_width(&self.text, self.size))
+        self.position - DVec2::X * (before * width)
     }
 }
 

@@ -118,6 +118,19 @@ impl LengthUnit {
             Self::Meter => "meter",
         }
     }
+
+    /// Returns the unit's symbol; empty if the unit is unknown.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Unknown => "",
+            Self::Angstrom => "\u{c5}",
+            Self::Nanometer => "nm",
+            Self::Bohr => "bohr",
+            Self::Micrometer => "\u{b5}m",
+            Self::Centimeter => "cm",
+            Self::Meter => "m",
+        }
+    }
 }
 
 impl Format {

@@ -3,7 +3,7 @@
 use super::template::{Template, Value};
 use super::{Fault, Request, Subject};
 use crate::color;
-use crate::scene::particles::{Applied, Category, Cell, Coloring, Legend, LengthUnit, Particles};
+use crate::scene::particles::{Applied, Category, Cell, Coloring, Legend, Particles};
 use crate::scene::{
     Anchor, Annotations, AxisTripod, ColorBar, ColorLegend, Label, Lettering, Rgb, ScaleBar, Scene,
 };
@@ -154,6 +154,8 @@ pub(super) struct Facts {
     pub(super) categories: Option<Vec<Category>>,
     /// True if colors stand for numbers.
     numeric: bool,
+    /// The title of what colors stand for, if it is one column.
+    label: String,
     /// The cell, if the particles have one.
     pub(super) cell: Option<Cell>,
     /// Symbol of the unit of length; empty if the unit is unknown.
@@ -178,8 +180,14 @@ impl Facts {
         Self {
             categories: legend.then(|| particles.categories(style, applied)).flatten(),
             numeric: style.column_colors().any(|colors| colors.is_numeric(particles)),
+            label: match &style.coloring {
+                Coloring::Column(colors) if style.colorings().count() == 1 => {
+                    colors.label(&particles.frame)
+                }
+                _ => String::new(),
+            },
             cell: particles.frame.cell,
-            unit: symbol(particles.frame.unit),
+            unit: particles.frame.unit.symbol(),
             header: Some(Header {
                 step: particles.frame.step,
                 time: particles.frame.time,
@@ -219,19 +227,6 @@ impl Facts {
     }
 }
 
-/// Returns the symbol of a unit of length; empty if the unit is unknown.
-fn symbol(unit: LengthUnit) -> &'static str {
-    match unit {
-        LengthUnit::Unknown => "",
-        LengthUnit::Angstrom => "\u{c5}",
-        LengthUnit::Nanometer => "nm",
-        LengthUnit::Bohr => "bohr",
-        LengthUnit::Micrometer => "\u{b5}m",
-        LengthUnit::Centimeter => "cm",
-        LengthUnit::Meter => "m",
-    }
-}
-
 impl AnnotationRequest {
     /// Returns whether a label has this field.
     pub fn shows(&self, field: &str) -> bool {
@@ -257,13 +252,7 @@ pub(super) fn add(
     let none = request.style.allow_empty && scene.is_empty();
     match (asked.legend, &facts.categories) {
         (Some(position), Some(categories)) => {
-            let label = match &request.style.coloring {
-                Coloring::Column(colors) if request.style.colorings().count() == 1 => {
-                    colors.column.clone()
-                }
-                _ => String::new(),
-            };
-            annotations.legend = Some(color_legend(categories, label, position));
+            annotations.legend = Some(color_legend(categories, facts.label.clone(), position));
         }
         (Some(_), None) if !none => return Err(Fault::Legend { numeric: facts.numeric }),
         _ => (),

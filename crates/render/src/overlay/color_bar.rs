@@ -2,7 +2,9 @@
 
 use super::annotations::Block;
 use crate::color::{Rgb, Scale, Tick, ticks};
-use crate::graphics::{Align, CAP_HEIGHT, Drawing, Format, PageError, Text, text_width};
+use crate::graphics::{
+    Align, CAP_HEIGHT, Drawing, Format, PageError, Text, marked_width, text_width,
+};
 use glam::DVec2;
 
 /// Lengths of color bars in files, in pixels.
@@ -30,7 +32,8 @@ pub enum Direction {
     Right,
 }
 
-/// A color bar with its layout: colors, round numbers beside them, and a label above.
+/// A color bar with its layout: colors, round numbers beside them, and a label above, in which `_` and `^` mark subscripts and
+/// superscripts, as in `v_x` and `m^2`.
 ///
 /// If a scale has separate colors outside of its range, the bar ends in arrows of these colors.
 #[derive(Clone, Debug)]
@@ -87,12 +90,12 @@ impl Bar {
         let position = DVec2::new(0.0, CAP_HEIGHT * self.letter);
         let text = self.label.clone();
         let (align, size) = (Align::Start, self.letter);
-        drawing.text(Text { text, position, align, size, color: ink });
+        drawing.marked_text(Text { text, position, align, size, color: ink });
         Block { drawing, size: self.size() }
     }
 
     fn size(&self) -> DVec2 {
-        let title = text_width(&self.label, self.letter);
+        let title = marked_width(&self.label, self.letter);
         let corner = self.corner();
         let below = self.arrow(self.scale.below);
         let half_number = CAP_HEIGHT * self.letter / 2.0;

@@ -201,7 +201,8 @@ fn print_framing(setup: &RenderSetup, plan: &Plan) {
             output::note(format_args!("one camera frames all of {}", plural(frames, "frame")));
         }
         _ => {
-            let ranged = setup.request.style.column_colors().any(|own| own.ends.is_none());
+            let mut colors = setup.request.style.column_colors();
+            let ranged = colors.any(|own| own.ends.depend_on_values());
             let colors = if ranged { ", and its color range applies to all images" } else { "" };
             output::note(format_args!(
                 "the camera frames the first frame{colors}: the input can be read only once"

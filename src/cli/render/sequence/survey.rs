@@ -7,8 +7,8 @@ use crate::cli::render::setup::{Common, RenderSetup};
 use spherule_render::compose::{self, Shared, Staged};
 use spherule_render::scene::FileError;
 use spherule_render::scene::particles::{
-    ArrowSizes, ArrowStyle, Category, Orientation, ParticleFrame, ParticleStyle, Particles,
-    ReadOptions, TrajectoryReader,
+    ArrowSizes, ArrowStyle, Category, ColumnSummary, Orientation, ParticleFrame, ParticleStyle,
+    Particles, ReadOptions, TrajectoryReader,
 };
 use spherule_render::world::WorldError;
 use spherule_render::world::framing::SequenceBounds;
@@ -19,16 +19,17 @@ use std::path::Path;
 pub(super) struct Survey {
     bounds: Option<SequenceBounds>,
     orientation: Option<Orientation>,
-    /// Color ranges of [`ParticleStyle::column_colors`]: the minimum and the maximum over all frames.
-    ends: Vec<Option<[f64; 2]>>,
+    /// The numbers of [`ParticleStyle::column_colors`] in all frames.
+    colors: Vec<ColumnSummary>,
     /// True for those that are of numbers, also if no frame has a finite one.
     numeric: Vec<bool>,
     /// True for the styles whose selections hold a particle of a frame.
     matched: Vec<bool>,
     /// The choices by the first frame of the file, and types and strings, whose order determines their colors.
     trajectory: TrajectoryReader,
-    /// The names that colors stand for, if they are asked for.
-    categories: Option<Vec<Category>>,
+    /// The names that colors stand for, if they are asked for, and the integers that these are, with the row of their colors in
+    /// `colors`.
+    categories: Option<Vec<(Category, Option<(usize, i64)>)>>,
     /// The sizes of arrows in the first frame that has any.
     arrow_sizes: Option<ArrowSizes>,
     /// Warnings about the first frame that shows a sphere.
@@ -71,13 +72,27 @@ impl Survey {
             return Ok(());
         }
         self.shown += 1;
+        let summaries = std::mem::take(&mut staged.applied.summaries);
         for category in staged.categories.take().into_iter().flatten() {
             let known = self.categories.get_or_insert_default();
-            let same =
-                |own: &&mut Category| own.name == category.name && own.color == category.color;
+            let label = summaries.iter().enumerate().find_map(|(row, summary)| {
+                let summary = summary.as_ref()?;
+                Some((row, summary.label(&category.name, category.color)?))
+            });
+            let same = |(own, of): &&mut (Category, Option<(usize, i64)>)| {
+                own.name == category.name
+                    && *of == label
+                    && (label.is_some() || own.color == category.color)
+            };
             match known.iter_mut().find(same) {
-                Some(own) => own.count += category.count,
-                None => known.push(category),
+                Some((own, _)) => own.count += category.count,
+                None => known.push((category, label)),
+            }
+        }
+        self.colors.resize_with(summaries.len(), ColumnSummary::default);
+        for (all, summary) in self.colors.iter_mut().zip(&summaries) {
+            if let Some(summary) = summary {
+                all.add(summary);
             }
         }
         if self.shown == 1 {
@@ -89,24 +104,29 @@ impl Survey {
             let vertical = compose::vertical(&setup.request, &staged.scene.camera, orientation);
             self.bounds = SequenceBounds::new(&staged.scene, vertical);
         }
-        let Staged { scene, applied, .. } = staged;
-        self.ends.resize(applied.legends.len(), None);
-        for (ends, legend) in self.ends.iter_mut().zip(applied.legends) {
-            let Some(range) = legend.map(|legend| legend.scale.range) else { continue };
-            let [low, high] = ends.unwrap_or([range.low(), range.high()]);
-            *ends = Some([low.min(range.low()), high.max(range.high())]);
-        }
+        let Staged { scene, .. } = staged;
         if let Some(bounds) = &mut self.bounds {
             bounds.add(&scene, &compose::corners(&scene));
         }
         Ok(())
     }
 
-    /// Sets the color ranges of all frames.
+    /// Sets the meaning of colors in all frames.
     pub(super) fn fix_colors(&self, style: &mut ParticleStyle) {
-        for (colors, ends) in style.column_colors_mut().zip(&self.ends) {
-            colors.ends = colors.ends.or(*ends);
+        for (colors, summary) in style.column_colors_mut().zip(&self.colors) {
+            colors.shared = summary.share(colors).ok();
         }
+    }
+
+    /// Returns the names that colors stand for in all frames, with the colors that they have there.
+    fn categories(&self, style: &ParticleStyle) -> Option<Vec<Category>> {
+        let in_all = |(category, label): &(Category, Option<(usize, i64)>)| {
+            let Some((row, label)) = *label else { return Some(category.clone()) };
+            let shared = style.column_colors().nth(row)?.shared.as_ref();
+            let color = shared.and_then(|shared| shared.color_of(label))?;
+            Some(Category { color, ..category.clone() })
+        };
+        self.categories.as_ref()?.iter().map(in_all).collect()
     }
 
     /// Sets the sizes of the arrows of all frames.
@@ -121,9 +141,11 @@ impl Survey {
         if self.shown > 0 {
             looks.check_types(path, self.trajectory.names())?;
             looks.check_matched(path, &self.matched)?;
-            let mut ranges = looks.column_colors().zip(&self.numeric).zip(&self.ends);
-            let without = ranges.find(|((_, numeric), ends)| **numeric && ends.is_none());
-            return without.map_or(Ok(()), |((colors, _), _)| Err(colors.range_error(path)));
+            let colored = looks.column_colors().zip(&self.numeric).zip(&self.colors);
+            for ((colors, _), summary) in colored.filter(|((_, numeric), _)| **numeric) {
+                summary.share(colors).map_err(|error| colors.range_error(path, &error))?;
+            }
+            return Ok(());
         }
         let frames = plural(self.frames, "frame");
         let message = format!("has no sphere in {frames} of the sequence");
@@ -152,7 +174,8 @@ impl Survey {
         }
         let ground = still.ground.map(|ground| ground.height);
         let camera = if angle.is_none() { still.camera } else { view(angle)?.camera };
-        let (orientation, categories) = (self.orientation, self.categories.clone());
+        let categories = self.categories(&setup.request.style);
+        let orientation = self.orientation;
         let shared = Shared { camera, orientation, ground, categories };
         Ok(Common { shared, frames_all: self.all })
     }

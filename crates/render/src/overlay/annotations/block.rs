@@ -3,7 +3,7 @@
 use super::Viewpoint;
 use crate::color::{Range, Rgb, Spacing, ticks};
 use crate::elementary::{log10, power_of_ten};
-use crate::graphics::{Align, CAP_HEIGHT, Drawing, Text, text_width};
+use crate::graphics::{Align, CAP_HEIGHT, Drawing, Text, marked_width, text_width};
 use crate::scene::{Anchor, ColorLegend, Label, ScaleBar};
 use glam::DVec2;
 
@@ -48,7 +48,7 @@ fn alignment(anchor: Anchor, width: f64) -> (Align, f64) {
     }
 }
 
-/// Returns the block of a legend.
+/// Returns the block of a legend, whose label may have subscripts and superscripts.
 pub(super) fn legend(legend: &ColorLegend, size: f64, ink: Rgb) -> Block {
     let (radius, indent) = (0.42 * size, 1.35 * size);
     let mut drawing = Drawing::default();
@@ -61,9 +61,16 @@ pub(super) fn legend(legend: &ColorLegend, size: f64, ink: Rgb) -> Block {
             drawing.disc(center, radius + (size / 20.0).max(0.5), ink);
             drawing.disc(center, radius, color);
         }
-        width = width.max(x + text_width(text, size));
         let (position, align) = (DVec2::new(x, baseline), Align::Start);
-        drawing.text(Text { text: text.to_owned(), position, align, size, color: ink });
+        let line = Text { text: text.to_owned(), position, align, size, color: ink };
+        // Names are those of the file, in which `_` is itself.
+        if color.is_some() {
+            width = width.max(x + text_width(text, size));
+            drawing.text(line);
+        } else {
+            width = width.max(x + marked_width(text, size));
+            drawing.marked_text(line);
+        }
         baseline += LINE * size;
     };
     if !legend.label.is_empty() {

@@ -4,7 +4,7 @@ use super::block::Block;
 use super::materials::{self, Materials};
 use crate::scene::keys::{Schema, StyleKeys};
 use crate::scene::particles::{
-    Coloring, Model, Opacity, ParticleStyle, Particles, Properties, SelectedStyle,
+    ColorEnds, Coloring, Model, Opacity, ParticleStyle, Particles, Properties, SelectedStyle,
 };
 use crate::scene::{FileError, NamedMaterial, Scene};
 use std::path::Path;
@@ -38,7 +38,7 @@ fn read_style(block: &Block) -> Result<SelectedStyle, FileError> {
     }
     match (&mut own.color, keys.range) {
         (Some(Coloring::Column(colors)), Some([low, high])) if low <= high => {
-            colors.ends = Some([low, high]);
+            colors.ends = ColorEnds::numbers(low, high);
         }
         (_, None) => {}
         (Some(Coloring::Column(_)), Some(_)) => {

@@ -237,7 +237,8 @@ impl Section for ColorBar {
         }
         keys.visit(key("map", "the color map"), Word(&Map::ALL.map(|map| (map.name(), map))), map);
         keys.visit(key("reversed", "reverse the color map"), Flag, reversed);
-        keys.visit(key("label", "label"), Text, label);
+        let help = "label; in `v_x` and `m^2`, and in `v_{max}`, what follows a mark is a subscript or superscript";
+        keys.visit(key("label", help), Text, label);
         let help = "position of the color bar, which is horizontal at `\"top\"` and `\"bottom\"`";
         self::position(keys, position, help);
     }
@@ -254,7 +255,8 @@ impl Section for ColorLegend {
         keys.visit(key("entries", help).required(example), Entries(Share), entries);
         let help = "number of further names that a last line mentions";
         keys.visit(key("omitted", help), Whole(0, u32::MAX as u64), omitted);
-        keys.visit(key("label", "first line"), Text, label);
+        let help = "first line, with subscripts and superscripts as in a [color bar](#color_bar)";
+        keys.visit(key("label", help), Text, label);
         self::position(keys, position, "position");
     }
 }

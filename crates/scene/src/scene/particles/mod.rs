@@ -27,9 +27,10 @@ pub use spherule_particles::{
     read_frame_after,
 };
 pub use style::{
-    Applied, ArrowCentering, ArrowSizes, ArrowStyle, Arrows, Category, Coloring, ColumnColors,
-    ElementColors, GHOST, Legend, Opacity, PROPERTIES, ParticleStyle, Properties, SelectedStyle,
-    TypeMaterial, TypeStyle, VectorColumns, map_named,
+    Applied, ArrowCentering, ArrowSizes, ArrowStyle, Arrows, Category, ColorEnd, ColorEnds,
+    Coloring, ColumnColors, ColumnSummary, ElementColors, GHOST, Legend, NumberColors, Opacity,
+    PROPERTIES, ParticleStyle, Properties, SelectedStyle, SharedColors, TypeMaterial, TypeStyle,
+    VectorColumns,
 };
 
 use super::FileError;

@@ -1,16 +1,16 @@
 //! Categories: the names that colors of particles stand for.
 
-use super::columns::Column;
+use super::labels::{self, Colored};
 use super::{Applied, Coloring, ParticleStyle};
 use crate::color::Rgb;
-use crate::scene::particles::{Codes, Element, Particles};
+use crate::scene::particles::{Element, Particles};
 use std::collections::BTreeMap;
 use std::path::Path;
 
 /// A name that a color stands for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Category {
-    /// The name: an element, a type, a text of a column, or a selection of one color.
+    /// The name: an element, a type, a text or an integer of a column, or a selection of one color.
     pub name: String,
     /// Linear color.
     pub color: Rgb,
@@ -69,19 +69,21 @@ impl Particles {
                 Some(vec![Category { name: name.to_owned(), color: *color, count }])
             }
             Coloring::Column(colors) => {
-                let Column::Texts { names, codes } = colors.column_of(Path::new(""), self).ok()?
-                else {
-                    return None;
-                };
-                let groups = self.groups(&codes, names.len(), rows)?;
-                Some(merged(names.iter().map(|name| [*name; 2]).zip(groups)))
+                let path = Path::new("");
+                let column = colors.evaluate(path, self).ok()?.of_rows(rows);
+                let column = labels::colored(colors, path, column).ok()?;
+                let Colored::Names { names, codes, .. } = column else { return None };
+                let coded = rows.iter().enumerate().map(|(at, &row)| (row, codes.code(at)));
+                let groups = self.groups(coded, names.len())?;
+                Some(merged(names.iter().map(|name| [&**name; 2]).zip(groups)))
             }
             Coloring::Usual | Coloring::Elements(_) => {
                 let kinds = &self.frame.kinds;
                 if kinds.codes.is_empty() {
                     return None;
                 }
-                let groups = self.groups(&kinds.codes, kinds.table.len(), rows)?;
+                let coded = rows.iter().map(|&row| (row, kinds.codes.code(row)));
+                let groups = self.groups(coded, kinds.table.len())?;
                 let named = kinds.table.iter().map(|kind| {
                     let element: Option<&str> = kind.element.map(Element::symbol);
                     [element.unwrap_or(&kind.name), &kind.name]
@@ -91,12 +93,16 @@ impl Particles {
         }
     }
 
-    /// Returns the color and the number of those of some particles that have each code; `None` if those of one code have
+    /// Returns the color and the number of the particles of each code, of pairs of row and code; `None` if those of one code have
     /// different colors.
-    fn groups(&self, codes: &Codes, count: usize, rows: &[usize]) -> Option<Vec<Group>> {
+    fn groups(
+        &self,
+        coded: impl Iterator<Item = (usize, u32)>,
+        count: usize,
+    ) -> Option<Vec<Group>> {
         let mut groups = vec![Group::default(); count];
-        for &row in rows.iter().filter(|row| **row < codes.len()) {
-            let group = groups.get_mut(codes.code(row) as usize)?;
+        for (row, code) in coded {
+            let group = groups.get_mut(code as usize)?;
             let color = self.spheres.color_of(row);
             group.mixed |= *group.color.get_or_insert(color) != color;
             group.count += 1;

@@ -1,16 +1,17 @@
 //! Colors of elements and of columns.
 
-use super::Coloring;
 use super::columns::Column;
+use super::labels::{self, Colored, NumberColors};
+use super::{ColorEnds, Coloring, ColumnSummary, SharedColors};
 use crate::color;
 use crate::color::elements::{cpk, jmol};
-use crate::color::{Map, Range, RangeError, Rgb, Scale, Spacing, category};
+use crate::color::{CATEGORIES, Map, RangeError, Rgb, Scale, Spacing};
 use crate::scene::FileError;
 use crate::scene::particles::Codes;
 use crate::scene::particles::select::expression;
-use crate::scene::particles::{Element, LengthUnit, Particles};
+use crate::scene::particles::{Element, ParticleFrame, Particles};
 use crate::suggest;
-use std::collections::HashMap;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// A color scheme of elements.
@@ -64,7 +65,7 @@ impl Coloring {
         rows: Option<&[usize]>,
         allow_empty: bool,
     ) -> Result<Option<Painted>, FileError> {
-        let plain = |colors| Painted { colors, legend: None, warnings: Vec::new() };
+        let plain = |colors| Painted { colors, legend: None, summary: None, warnings: Vec::new() };
         Ok(Some(match self {
             Self::Usual => return Ok(None),
             Self::Uniform(color) => {
@@ -76,21 +77,28 @@ impl Coloring {
     }
 }
 
-/// Colors of particles by a column: numbers by a color map, texts by one color each, which repeat after
-/// [`CATEGORIES`](crate::color::CATEGORIES) texts.
+/// Colors of particles by a column: numbers by a color map, texts and integers that are labels by one color each, which
+/// repeat after [`CATEGORIES`](crate::color::CATEGORIES) of them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ColumnColors {
     /// The column: one of the file, or `x`, `y`, `z`, `radius`, `type`, `element`, `id`; or an expression over columns, in
     /// the language of [`Selection`](crate::scene::particles::Selection)s, as in `norm(velocity)` and `c_pe / mass`.
     pub column: String,
+    /// Treatment of numbers.
+    pub numbers: NumberColors,
     /// Color map for numbers; `None` is the default map.
     pub map: Option<Map>,
     /// True if the color map is reversed.
     pub reversed: bool,
-    /// Numbers at the ends of the map; numbers beyond them are clamped. `None` is the column's range.
-    pub ends: Option<[f64; 2]>,
+    /// Numbers at the ends of the map; numbers beyond them are clamped.
+    pub ends: ColorEnds,
     /// Spacing of numbers between the ends.
     pub spacing: Spacing,
+    /// Title of the color bar or legend, in which `_` and `^` mark subscripts and superscripts; `None` for one that is made of
+    /// the column's name.
+    pub title: Option<String>,
+    /// The meaning of colors that frames of a sequence have in common; `None` for that of the column.
+    pub shared: Option<SharedColors>,
 }
 
 /// Meaning of the colors of a picture.
@@ -98,7 +106,7 @@ pub struct ColumnColors {
 pub struct Legend {
     /// Map from numbers to colors.
     pub scale: Scale,
-    /// Label: the quantity, with its unit if it is known.
+    /// Label: the quantity, with its unit if it is known; `_` and `^` mark subscripts and superscripts.
     pub label: String,
 }
 
@@ -108,12 +116,44 @@ pub(super) struct Painted {
     pub(super) colors: Vec<Rgb>,
     /// Their meaning, if they stand for numbers.
     pub(super) legend: Option<Legend>,
+    /// A summary of their numbers, if their meaning is not shared with other frames.
+    pub(super) summary: Option<ColumnSummary>,
     pub(super) warnings: Vec<String>,
 }
 
 impl ColumnColors {
+    /// Chooses the colors of numbers: a map by its name, which ends in `_r` for a reversed one, or `categories`.
+    ///
+    /// # Errors
+    ///
+    /// There is no such map; the names.
+    pub fn set_map(&mut self, name: &str) -> Result<(), String> {
+        const CATEGORIES: &str = "categories";
+        if name == CATEGORIES {
+            (self.numbers, self.map) = (NumberColors::Categories, None);
+            return Ok(());
+        }
+        let (stem, reversed) = name.strip_suffix("_r").map_or((name, false), |stem| (stem, true));
+        let map = Map::named(stem).ok_or_else(|| {
+            let names = Map::ALL.into_iter().map(Map::name).chain([CATEGORIES]);
+            let help = suggest::help(stem, names, "maps are");
+            format!("unknown color map `{name}`; {help} (maps are also reversed, with _r)")
+        })?;
+        (self.numbers, self.map, self.reversed) = (NumberColors::Map, Some(map), reversed);
+        Ok(())
+    }
+
     /// Returns the column, or the numbers of the expression.
     pub(super) fn column_of<'p>(
+        &self,
+        path: &Path,
+        particles: &'p Particles,
+    ) -> Result<Colored<'p>, FileError> {
+        labels::colored(self, path, self.evaluate(path, particles)?)
+    }
+
+    /// Returns the column, or the numbers of the expression, whatever their colors.
+    pub(super) fn evaluate<'p>(
         &self,
         path: &Path,
         particles: &'p Particles,
@@ -137,27 +177,44 @@ impl ColumnColors {
         rows: Option<&[usize]>,
         allow_empty: bool,
     ) -> Result<Painted, FileError> {
-        let mut column = self.column_of(path, particles)?;
+        let mut column = self.evaluate(path, particles)?;
         if let Some(rows) = rows {
             column = column.of_rows(rows);
         }
+        let summary = match &column {
+            Column::Numbers(values) if self.shared.is_none() => {
+                Some(ColumnSummary::of(self, values))
+            }
+            Column::Numbers(_) | Column::Texts { .. } => None,
+        };
         let (mut undefined, mut warnings) = (0, Vec::new());
-        let (colors, legend, missing) = match &column {
-            Column::Numbers(values) => match self.scale(values) {
+        let (colors, legend, missing) = match labels::colored(self, path, column)? {
+            Colored::Numbers(values) => match self.scale(summary.as_ref()) {
                 Ok(scale) => {
-                    let legend = Legend { scale, label: self.label(particles.frame.unit) };
+                    let legend = Legend { scale, label: self.label(&particles.frame) };
                     let has_no_place = |value: &&f64| scale.range.is_undefined(**value);
-                    undefined = values.iter().filter(has_no_place).count() - missing(values);
-                    (scale.colors(values), Some(legend), missing(values))
+                    undefined = values.iter().filter(has_no_place).count() - missing(&values);
+                    (scale.colors(&values), Some(legend), missing(&values))
                 }
-                Err(RangeError::Empty | RangeError::NonePositive) if allow_empty => {
-                    (Vec::new(), None, missing(values))
+                Err(error) if allow_empty && self.may_have_range(&error) => {
+                    (Vec::new(), None, missing(&values))
                 }
-                Err(error) => return Err(self.scale_error(path, error)),
+                Err(error) => return Err(self.range_error(path, &error)),
             },
-            Column::Texts { names, codes } => {
-                self.check_texts(path)?;
-                (table_colors(codes, &categories(names)), None, 0)
+            Colored::Names { names, colors, codes, missing } => {
+                let used: BTreeSet<&str> =
+                    used(&codes, names.len()).map(|row| &*names[row]).collect();
+                let count = used.len() - usize::from(missing > 0);
+                if count > CATEGORIES {
+                    let warning = format!(
+                        "{}: `{}` has {count} different values, more than the {CATEGORIES} colors of categories, \
+                         which repeat",
+                        path.display(),
+                        self.column
+                    );
+                    warnings.push(warning);
+                }
+                (table_colors(&codes, &colors), None, missing)
             }
         };
         if missing > 0 {
@@ -177,79 +234,59 @@ impl ColumnColors {
             );
             warnings.push(warning);
         }
-        Ok(Painted { colors, legend, warnings })
+        Ok(Painted { colors, legend, summary, warnings })
     }
 
-    /// Returns whether the column holds numbers.
+    /// Returns whether colors stand for numbers, and not for integers or texts with colors of their own.
     pub fn is_numeric(&self, particles: &Particles) -> bool {
-        matches!(self.column_of(Path::new(""), particles), Ok(Column::Numbers(_)))
+        matches!(self.column_of(Path::new(""), particles), Ok(Colored::Numbers(_)))
     }
 
     /// Returns the error for a column without a range.
-    pub fn range_error(&self, path: &Path) -> FileError {
-        let error = match self.spacing {
-            Spacing::Linear => RangeError::Empty,
-            Spacing::Logarithmic => RangeError::NonePositive,
-        };
-        self.scale_error(path, error)
-    }
-
-    fn scale_error(&self, path: &Path, error: RangeError) -> FileError {
+    pub fn range_error(&self, path: &Path, error: &RangeError) -> FileError {
         let message = format!("cannot color by the column `{}`: {error}", self.column);
         FileError::whole_file(path, message)
     }
 
+    /// Returns whether other frames may have a range, though the values of one have none.
+    fn may_have_range(&self, error: &RangeError) -> bool {
+        match error {
+            RangeError::Empty | RangeError::NonePositive => true,
+            _ => self.ends.depend_on_values(),
+        }
+    }
+
     /// Returns the legend if there are no particles: known if the ends of the map are given.
-    pub(super) fn legend_of_ends(&self, unit: LengthUnit) -> Option<Legend> {
-        let scale = self.ends.and_then(|_| self.scale(&[]).ok())?;
-        Some(Legend { scale, label: self.label(unit) })
-    }
-
-    fn scale(&self, values: &[f64]) -> Result<Scale, RangeError> {
-        let range = match self.ends {
-            Some([low, high]) => Range::new(low, high, self.spacing),
-            None => Range::of(values, self.spacing),
-        };
-        let scale = Scale::new(self.map.unwrap_or_default(), range?);
-        Ok(Scale { reversed: self.reversed, ..scale })
-    }
-
-    /// Checks that neither a map nor a range is given, which are for numbers.
-    fn check_texts(&self, path: &Path) -> Result<(), FileError> {
-        if self.map.is_none() && self.ends.is_none() && self.spacing == Spacing::Linear {
-            return Ok(());
+    pub(super) fn legend_of_ends(&self, frame: &ParticleFrame) -> Option<Legend> {
+        if self.shared.as_ref().is_some_and(|shared| shared.labels.is_some()) {
+            return None;
         }
-        let message = format!(
-            "the column `{}` holds texts, to which color map and range do not apply",
-            self.column
-        );
-        Err(FileError::whole_file(path, message).with_help("name a column of numbers"))
+        let scale = self.scale(None).ok()?;
+        Some(Legend { scale, label: self.label(frame) })
     }
 
-    /// Returns the name of the column, with the unit if it is a length.
-    fn label(&self, unit: LengthUnit) -> String {
-        let lengths = ["x", "y", "z", "radius", "diameter"];
-        let is_length = lengths.iter().any(|name| name.eq_ignore_ascii_case(&self.column));
-        if is_length && unit != LengthUnit::Unknown {
-            format!("{} ({})", self.column, unit.name())
-        } else {
-            self.column.clone()
-        }
+    /// Returns the scale of values, or of all frames of a sequence. If there are values beyond an end, it has a color for them,
+    /// that of the end.
+    fn scale(&self, summary: Option<&ColumnSummary>) -> Result<Scale, RangeError> {
+        let of_values = || summary.unwrap_or(&ColumnSummary::default()).share(self);
+        let SharedColors { range, beyond: [below, above], .. } =
+            self.shared.clone().map_or_else(of_values, Ok)?;
+        let scale = Scale::new(self.map.unwrap_or_default(), range);
+        let scale = Scale { reversed: self.reversed, ..scale };
+        let end = |is_beyond: bool, position| is_beyond.then(|| scale.at(position));
+        Ok(Scale { below: end(below, 0.0), above: end(above, 1.0), ..scale })
     }
 }
 
-/// Returns the map with a name, and whether it is reversed, as one whose name ends in `_r`.
-///
-/// # Errors
-///
-/// There is no such map; the names.
-pub fn map_named(name: &str) -> Result<(Map, bool), String> {
-    let (stem, reversed) = name.strip_suffix("_r").map_or((name, false), |stem| (stem, true));
-    let map = Map::named(stem).ok_or_else(|| {
-        let help = suggest::help(stem, Map::ALL.into_iter().map(Map::name), "maps are");
-        format!("unknown color map `{name}`; {help} (each also reversed, with _r)")
-    })?;
-    Ok((map, reversed))
+impl Coloring {
+    /// Colors numbers by a color map if nothing else is asked for, as a color bar needs it.
+    pub fn prefer_map(&mut self) {
+        if let Self::Column(colors) = self
+            && colors.numbers == NumberColors::Auto
+        {
+            colors.numbers = NumberColors::Map;
+        }
+    }
 }
 
 /// Returns subject and verbs for so many particles.
@@ -261,27 +298,14 @@ fn missing(values: &[f64]) -> usize {
     values.iter().filter(|value| value.is_nan()).count()
 }
 
-/// Returns the colors of texts: equal texts have equal colors.
-fn categories(names: &[&str]) -> Vec<Rgb> {
-    let mut indices = HashMap::new();
-    let mut index = |name| {
-        let next = indices.len();
-        *indices.entry(name).or_insert(next)
-    };
-    names.iter().map(|&name| category(index(name))).collect()
+/// Returns the codes that particles have.
+fn used(codes: &Codes, count: usize) -> impl Iterator<Item = usize> {
+    let mut is_used = vec![false; count];
+    (0..codes.len()).for_each(|row| is_used[codes.code(row) as usize] = true);
+    (0..count).filter(move |&code| is_used[code])
 }
 
 /// Returns the color of each row.
 fn table_colors(codes: &Codes, table: &[Rgb]) -> Vec<Rgb> {
     (0..codes.len()).map(|row| table[codes.code(row) as usize]).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn texts_that_are_the_same_have_one_color() {
-        assert_eq!(categories(&["C", "N", "C", "O"]), [0, 1, 0, 2].map(category));
-    }
 }

@@ -4,20 +4,27 @@ mod arrows;
 mod categories;
 mod colors;
 mod columns;
+mod ends;
+mod labels;
 mod opacity;
 mod properties;
 mod selected;
+mod summary;
+mod title;
 mod types;
 
 pub use arrows::{ArrowCentering, ArrowSizes, ArrowStyle, Arrows, VectorColumns};
 pub use categories::Category;
 use colors::Painted;
-pub use colors::{ColumnColors, ElementColors, Legend, map_named};
+pub use colors::{ColumnColors, ElementColors, Legend};
 use columns::SPEED;
 pub(super) use columns::{Column, ID, INDEX, missing, nearest, numbers, unknown};
+pub use ends::{ColorEnd, ColorEnds};
+pub use labels::NumberColors;
 pub use opacity::{GHOST, Opacity};
 pub use properties::{PROPERTIES, Properties};
 pub use selected::{Applied, SelectedStyle};
+pub use summary::{ColumnSummary, SharedColors};
 pub use types::{TypeMaterial, TypeStyle};
 
 use super::NumberColumn;
@@ -181,16 +188,18 @@ impl ParticleStyle {
             assigned = selected::assign(self, path, particles, &mut applied.matched)?;
         }
         if particles.spheres.is_empty() {
-            let unit = particles.frame.unit;
-            applied.legends = self.column_colors().map(|own| own.legend_of_ends(unit)).collect();
+            let frame = &particles.frame;
+            applied.legends = self.column_colors().map(|own| own.legend_of_ends(frame)).collect();
+            applied.summaries = vec![None; applied.legends.len()];
             return Ok(applied);
         }
         let painted = self.coloring.paint(path, particles, None, self.allow_empty)?;
-        if let Some(Painted { colors, legend, warnings }) = painted {
+        if let Some(Painted { colors, legend, summary, warnings }) = painted {
             particles.spheres.color = colors;
             particles.frame.warnings.extend(warnings);
             if matches!(self.coloring, Coloring::Column(_)) {
                 applied.legends.push(legend);
+                applied.summaries.push(summary);
             }
         }
         selected::color(&assigned, path, particles, self.allow_empty, &mut applied)?;

@@ -1,6 +1,5 @@
 //! Properties of the look of some particles, as options write them: `model=licorice color=gold opacity=0.5`.
 
-use super::colors::map_named;
 use super::types::TypeMaterial;
 use super::{Coloring, ColumnColors, ElementColors, Opacity};
 use crate::color::{self, Rgb, Spacing};
@@ -36,7 +35,7 @@ pub const PROPERTIES: [(&str, &str); 12] = [
     ("model", "space-filling, ball-and-stick or licorice"),
     ("color", "a color, element, or a column or an expression over columns"),
     ("map", "the color map of a column of numbers"),
-    ("range", "the numbers at the ends of the map, LOW,HIGH"),
+    ("range", "the ends of the map, LOW,HIGH: numbers, percentiles such as 2%, or auto"),
     ("log", "yes for a logarithmic map"),
     ("radius", "the radius as it is drawn"),
     ("scale", "a factor on the radius"),
@@ -97,11 +96,9 @@ impl Properties {
             "model" => self.model = Some(model(value)?),
             "color" => self.color = Some(coloring(value)?),
             "map" => {
-                let (map, reversed) = map_named(value)?;
-                let colors = self.numbers(name)?;
-                (colors.map, colors.reversed) = (Some(map), reversed);
+                self.numbers(name)?.set_map(value)?;
             }
-            "range" => self.numbers(name)?.ends = range(value)?,
+            "range" => self.numbers(name)?.ends = value.parse()?,
             "log" => {
                 self.numbers(name)?.spacing =
                     if flag(value)? { Spacing::Logarithmic } else { Spacing::Linear };
@@ -194,16 +191,6 @@ fn coloring(text: &str) -> Result<Coloring, String> {
         return color::of_name(text).map(Coloring::Uniform);
     }
     Ok(Coloring::Column(ColumnColors { column: text.to_owned(), ..ColumnColors::default() }))
-}
-
-fn range(text: &str) -> Result<Option<[f64; 2]>, String> {
-    if text == "auto" {
-        return Ok(None);
-    }
-    let number = |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite());
-    let numbers = text.split_once(',').and_then(|(low, high)| Some([number(low)?, number(high)?]));
-    let fault = || "give two numbers, the lower one first, as in -1,2.5, or auto".to_owned();
-    numbers.filter(|[low, high]| low <= high).map(Some).ok_or_else(fault)
 }
 
 fn positive(what: &str, text: &str) -> Result<f64, String> {

@@ -2,7 +2,7 @@
 
 use super::colors::Painted;
 use super::properties::{PROPERTIES, entries};
-use super::{Coloring, GHOST, Legend, Opacity, ParticleStyle, Properties, opacity};
+use super::{Coloring, ColumnSummary, GHOST, Legend, Opacity, ParticleStyle, Properties, opacity};
 use crate::color::Rgb;
 use crate::scene::particles::model::{self, Part};
 use crate::scene::particles::spheres::common_color;
@@ -60,6 +60,8 @@ impl FromStr for SelectedStyle {
 pub struct Applied {
     /// The meaning of colors for each of [`ParticleStyle::column_colors`]; `None` if it colors no particle by numbers.
     pub legends: Vec<Option<Legend>>,
+    /// Summaries of the numbers of the same colors; `None` for those that are shared with other frames, or of texts.
+    pub summaries: Vec<Option<ColumnSummary>>,
     /// True for each of [`ParticleStyle::styles`] whose selection holds a particle.
     pub matched: Vec<bool>,
     /// The style that colors each particle: 0 for the base, `k + 1` for [`ParticleStyle::styles`] `k`; empty if none of
@@ -178,6 +180,7 @@ pub(super) fn color(
         };
         if matches!(coloring, Coloring::Column(_)) {
             applied.legends.push(painted.as_ref().and_then(|painted| painted.legend.clone()));
+            applied.summaries.push(painted.as_ref().and_then(|painted| painted.summary.clone()));
         }
         let Some(Painted { colors, warnings, .. }) = painted else { continue };
         particles.frame.warnings.extend(warnings);

@@ -1,7 +1,9 @@
 use super::*;
 use crate::color::elements::cpk;
 use crate::color::{Map, RangeError, Spacing, category, srgb};
-use crate::scene::particles::{Columns, Element, LengthUnit, Radii, ReadOptions, read};
+use crate::scene::particles::{
+    Columns, Element, LengthUnit, ParticleFrame, Radii, ReadOptions, read,
+};
 use crate::scene::{Material, Rgb, Scene};
 use glam::DVec3;
 
@@ -44,7 +46,8 @@ fn numbers_have_the_colors_of_a_map() {
     let (particles, legend) = apply(DUMP, &colored(reversed)).expect("colors");
     assert_eq!(particles.spheres.color, [at(1.0), at(0.5), at(0.0)]);
     assert!(legend.expect("a legend").scale.reversed);
-    let clipped = ColumnColors { ends: Some([50.0, 100.0]), map: Some(Map::Turbo), ..by("q") };
+    let clipped =
+        ColumnColors { ends: ColorEnds::numbers(50.0, 100.0), map: Some(Map::Turbo), ..by("q") };
     let (particles, _) = apply(DUMP, &colored(clipped)).expect("colors");
     let at = |position: f64| Map::Turbo.at(position);
     assert_eq!(particles.spheres.color, [at(0.0), at(1.0), at(1.0)]);
@@ -56,9 +59,77 @@ fn texts_have_colors_of_their_own() {
         let (particles, legend) = apply(DUMP, &colored(by(column))).expect("colors");
         assert_eq!((particles.spheres.color, legend), (codes.map(category).into(), None));
     }
-    let ranged = ColumnColors { ends: Some([0.0, 1.0]), ..by("mol") };
+    let ranged = ColumnColors { ends: ColorEnds::numbers(0.0, 1.0), ..by("mol") };
     let error = apply(DUMP, &colored(ranged)).expect_err("no range");
     assert!(error.message.contains("`mol` holds texts"), "{error}");
+}
+
+#[test]
+fn integers_of_labels_have_colors_of_their_own() {
+    let table = "x,y,z,mol,q\n0,0,0,7,1\n1,0,0,3,2\n2,0,0,,1\n3,0,0,7,3\n";
+    let gray = srgb(0x80_80_80);
+    let (particles, legend) = apply(table, &colored(by("mol"))).expect("colors");
+    let colors = vec![category(1), category(0), gray, category(1)];
+    assert_eq!((&particles.spheres.color, &legend), (&colors, &None));
+    assert!(particles.frame.warnings.iter().any(|text| text.contains("no value of `mol`")));
+    let names = particles.categories(&colored(by("mol")), &Applied::default()).expect("categories");
+    let names: Vec<(&str, u64)> = names.iter().map(|own| (own.name.as_str(), own.count)).collect();
+    assert_eq!(names, [("3", 1), ("7", 2), ("missing", 1)]);
+    // Frames have the colors of their sequence, and values that were not in it come last.
+    let mut all = ColumnSummary::of(&by("mol"), &[1.0, 7.0]);
+    all.add(&ColumnSummary::of(&by("mol"), &[5.0]));
+    let shared = ColumnColors { shared: all.share(&by("mol")).ok(), ..by("mol") };
+    let (particles, _) = apply(table, &colored(shared)).expect("colors");
+    assert_eq!(particles.spheres.color, [category(2), category(3), gray, category(2)]);
+    // A map, a range or a color bar is for numbers, and other columns are numbers unless categories are asked for.
+    let mut bar = Coloring::Column(by("mol"));
+    bar.prefer_map();
+    let style = ParticleStyle { coloring: bar, ..ParticleStyle::default() };
+    assert!(apply(table, &style).expect("colors").1.is_some());
+    for colors in [
+        ColumnColors { map: Some(Map::Turbo), ..by("mol") },
+        ColumnColors { ends: ColorEnds::numbers(0.0, 9.0), ..by("mol") },
+        by("q"),
+    ] {
+        assert!(apply(table, &colored(colors)).expect("colors").1.is_some());
+    }
+    let chosen = |column| ColumnColors { numbers: NumberColors::Categories, ..by(column) };
+    let (particles, _) = apply(table, &colored(chosen("q"))).expect("colors");
+    assert_eq!(particles.spheres.color, [0, 1, 0, 2].map(category));
+    let odd = table.replace(",3\n", ",2.5\n");
+    let error = apply(&odd, &colored(chosen("q"))).expect_err("no integers");
+    assert!(error.message.contains("categories of the column `q`"), "{error}");
+    let ranged = ColumnColors { spacing: Spacing::Logarithmic, ..chosen("q") };
+    assert!(apply(table, &colored(ranged)).is_err());
+}
+
+#[test]
+fn more_categories_than_colors_are_reported() {
+    let rows: String = (0..31).map(|row| format!("{row},0,0,m{row},{row}\n")).collect();
+    let table = format!("x,y,z,name,n\n{rows}");
+    let chosen = ColumnColors { numbers: NumberColors::Categories, ..by("n") };
+    for colors in [by("name"), chosen] {
+        let (particles, _) = apply(&table, &colored(colors)).expect("colors");
+        let color = &particles.spheres.color;
+        assert_eq!((color[30], color[29]), (category(0), category(29)));
+        let warnings = &particles.frame.warnings;
+        assert!(warnings.iter().any(|text| text.contains("31 different values")), "{warnings:?}");
+    }
+}
+
+#[test]
+fn values_beyond_the_range_have_the_colors_of_its_ends() {
+    let scale = |ends: &str| {
+        let colors = ColumnColors { ends: ends.parse().expect("ends"), ..by("q") };
+        apply(DUMP, &colored(colors)).expect("colors").1.expect("a legend").scale
+    };
+    let ends = |ends: &str| [scale(ends).below, scale(ends).above];
+    let [low, high] = [0.0, 1.0].map(|position| Map::Viridis.at(position));
+    assert_eq!(ends("50%,2000"), [Some(low), None]);
+    assert_eq!(ends("10,50%"), [None, Some(high)]);
+    assert_eq!(ends("auto"), [None, None]);
+    let range = scale("50%,auto").range;
+    assert_eq!([range.low(), range.high()], [100.0, 1000.0]);
 }
 
 #[test]
@@ -112,7 +183,9 @@ fn maps_and_ranges_are_for_numbers() {
     for (spacing, reason) in
         [(Spacing::Linear, RangeError::Empty), (Spacing::Logarithmic, RangeError::NonePositive)]
     {
-        let error = ColumnColors { spacing, ..by("q") }.range_error(Path::new("p"));
+        let colors = ColumnColors { spacing, ..by("q") };
+        assert_eq!(ColumnSummary::default().share(&colors), Err(reason));
+        let error = colors.range_error(Path::new("p"), &reason);
         assert_eq!(error.message, format!("cannot color by the column `q`: {reason}"));
     }
 }
@@ -124,8 +197,8 @@ fn lengths_have_their_unit_in_the_legend() {
         legend.expect("a legend").label
     };
     let atoms = "2\nProperties=species:S:1:pos:R:3:q:R:1\nO 0 0 0 1\nH 1 2 0 2\n";
-    assert_eq!(label(atoms, "x"), "x (angstrom)");
-    assert_eq!(label(atoms, "RADIUS"), "RADIUS (angstrom)");
+    assert_eq!(label(atoms, "x"), "x (\u{c5})");
+    assert_eq!(label(atoms, "RADIUS"), "RADIUS (\u{c5})");
     assert_eq!((label(atoms, "q"), label(DUMP, "x")), ("q".to_owned(), "x".to_owned()));
 }
 
@@ -139,14 +212,15 @@ fn columns_without_a_number_have_no_colors_unless_that_is_allowed() {
     let style = ParticleStyle { allow_empty: true, ..colored(colors.clone()) };
     let (particles, legend) = apply(dust, &style).expect("no colors");
     assert_eq!((particles.spheres.color.len(), legend), (0, None));
-    let backwards = ColumnColors { ends: Some([2.0, 1.0]), ..by("x") };
+    let backwards = ColumnColors { ends: ColorEnds::numbers(2.0, 1.0), ..by("x") };
     let style = ParticleStyle { allow_empty: true, ..colored(backwards) };
     assert!(apply(dust, &style).is_err(), "a range that ends before it begins");
     // The ends of the map are known without particles.
-    let unit = LengthUnit::Nanometer;
-    assert_eq!(by("x").legend_of_ends(unit), None);
-    let legend = ColumnColors { ends: Some([1.0, 2.0]), ..by("x") }.legend_of_ends(unit);
-    assert_eq!(legend.expect("a legend").label, "x (nanometer)");
+    let frame = ParticleFrame { unit: LengthUnit::Nanometer, ..ParticleFrame::default() };
+    assert_eq!(by("x").legend_of_ends(&frame), None);
+    let legend =
+        ColumnColors { ends: ColorEnds::numbers(1.0, 2.0), ..by("x") }.legend_of_ends(&frame);
+    assert_eq!(legend.expect("a legend").label, "x (nm)");
 }
 
 #[test]
@@ -276,7 +350,7 @@ fn ranges_are_those_of_selected_particles() {
 
 #[test]
 fn diameters_are_twice_the_radii() {
-    let ranged = ColumnColors { ends: Some([0.0, 2.0]), ..by("diameter") };
+    let ranged = ColumnColors { ends: ColorEnds::numbers(0.0, 2.0), ..by("diameter") };
     let (particles, _) =
         apply(&DUMP.replace("radius", "diameter"), &colored(ranged)).expect("colors");
     let at = |position: f64| Map::Viridis.at(position);

@@ -212,7 +212,7 @@ fn styles_are_read_from_texts() {
         (colors.column.as_str(), colors.map, colors.reversed),
         ("c_pe / mass", Some(Map::Turbo), true)
     );
-    assert_eq!(colors.ends, Some([-1.0, 2.0]));
+    assert_eq!(colors.ends, crate::scene::particles::ColorEnds::numbers(-1.0, 2.0));
     let style = read("all:visible=no opacity=charge:-1,1");
     assert_eq!(style.properties.visible, Some(false));
     assert!(matches!(style.properties.opacity, Some(Opacity::Column { .. })));
