@@ -40,7 +40,7 @@ pub fn unmarked(text: &str) -> String {
 
 impl Drawing {
     /// Adds a line of text with marks.
-    pub fn marked_text(&mut self, line: Text) {
+    pub fn marked_text(&mut self, line: &Text) {
         let mut position = line.start_of(marked_width(&line.text, line.size));
         for run in runs(&line.text) {
             let width = run.width(line.size);
@@ -145,7 +145,8 @@ mod tests {
             ("c\\_pe a\\b", &["c_pe a\\b"]),
             ("_x a _b", &["_x a _b"]),
             ("a_ b^", &["a_ b^"]),
-            ("a_{b a^{}", &["a_{b a^{}"]),
+            ("a_{b a^", &["a_{b a^"]),
+            ("a^{}", &["a^{}"]),
             ("σ_αβ", &["σ", "_αβ"]),
             ("", &[]),
         ] {
@@ -161,7 +162,7 @@ mod tests {
         let mut drawing = Drawing::default();
         let (align, color) = (Align::End, Rgb::ZERO);
         let position = DVec2::new(50.0, 20.0);
-        drawing.marked_text(Text { text: "v_x".to_owned(), position, align, size: 10.0, color });
+        drawing.marked_text(&Text { text: "v_x".to_owned(), position, align, size: 10.0, color });
         let mut expected = Drawing::default();
         let start = 50.0 - marked_width("v_x", 10.0);
         for (text, x, y, size) in

@@ -90,7 +90,7 @@ impl Bar {
         let position = DVec2::new(0.0, CAP_HEIGHT * self.letter);
         let text = self.label.clone();
         let (align, size) = (Align::Start, self.letter);
-        drawing.marked_text(Text { text, position, align, size, color: ink });
+        drawing.marked_text(&Text { text, position, align, size, color: ink });
         Block { drawing, size: self.size() }
     }
 

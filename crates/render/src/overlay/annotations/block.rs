@@ -69,7 +69,7 @@ pub(super) fn legend(legend: &ColorLegend, size: f64, ink: Rgb) -> Block {
             drawing.text(line);
         } else {
             width = width.max(x + marked_width(text, size));
-            drawing.marked_text(line);
+            drawing.marked_text(&line);
         }
         baseline += LINE * size;
     };

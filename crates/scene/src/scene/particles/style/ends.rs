@@ -102,10 +102,10 @@ fn end(text: &str) -> Option<ColorEnd> {
         None => (text, false),
     };
     let number: f64 = number.parse().ok().filter(|number: &f64| number.is_finite())?;
-    match is_percent {
-        false => Some(ColorEnd::Number(number)),
-        true => (0.0..=100.0).contains(&number).then_some(ColorEnd::Percentile(number)),
+    if is_percent {
+        return (0.0..=100.0).contains(&number).then_some(ColorEnd::Percentile(number));
     }
+    Some(ColorEnd::Number(number))
 }
 
 impl Display for ColorEnds {

@@ -85,10 +85,9 @@ pub(super) enum Colored<'p> {
 /// Returns the integers of a column, if they have colors of their own.
 pub(super) fn of(colors: &ColumnColors, values: &[f64]) -> Option<BTreeSet<i64>> {
     let most = match colors.numbers {
-        NumberColors::Map => return None,
         NumberColors::Categories => usize::MAX,
         NumberColors::Auto if colors.is_plain() && is_label(&colors.column) => USUAL,
-        NumberColors::Auto => return None,
+        NumberColors::Auto | NumberColors::Map => return None,
     };
     let mut labels = BTreeSet::new();
     let mut last = f64::NAN;

@@ -79,7 +79,7 @@ impl ColumnSummary {
             self.sample.push(value);
             return;
         }
-        let place = u128::from(mixed(self.sampled)) * u128::from(self.sampled) >> 64;
+        let place = (u128::from(mixed(self.sampled)) * u128::from(self.sampled)) >> 64;
         if let Some(other) = self.sample.get_mut(place as usize) {
             *other = value;
         }
