@@ -98,10 +98,10 @@ pub mod scene {
         Anchor, Annotations, Axis, AxisTripod, Background, BodyBytes, Camera, ColorBar,
         ColorLegend, ConductorFresnel, Cones, Denoise, Ellipsoids, Environment, EnvironmentMap,
         FileError, Filter, Footprint, FramedSphere, Ground, Header, Identity, Insets, Integrator,
-        InvalidSetting, Label, Lens, Lettering, Light, LightChoice, Look, Material, NamedMaterial,
-        Place, Pose, Preset, Projection, Rgb, Roulette, SamplerKind, ScaleBar, Scene, Settings,
-        Slice, SliceMode, SlicePlane, Spheres, Sticks, Tone, Triangles, text_without_columns,
-        write, write_as,
+        InvalidSetting, Label, Length, Lens, LetterSize, Lettering, Light, LightChoice, Look,
+        Material, NamedMaterial, Paper, Place, Pose, Preset, Projection, Rgb, Roulette,
+        SamplerKind, ScaleBar, Scene, Settings, Slice, SliceMode, SlicePlane, Spheres, Sticks,
+        Tone, Triangles, text_without_columns, write, write_as,
     };
 
     /// Generators of spheres.
@@ -158,7 +158,7 @@ pub mod compose {
     pub use spherule_render::compose::{
         AnnotationRequest, Axes, Bar, CameraRequest, CellRequest, Content, Fault, Focus, LabelText,
         Labels, LensRequest, LookAt, ROWS, Request, Sections, Shared, Staged, Subject, Template,
-        Value, change, choose, frame, light_ahead, place, stage, zoom,
+        Value, change, choose, frame, light_ahead, place, position, stage, zoom,
     };
 }
 

@@ -109,7 +109,7 @@ SECTIONS = frozenset(Sections.__annotations__)
 #: Keys of the section `render`.
 RENDER = frozenset(
     "size spp until_error time denoise depth seed integrator light_choice shadow_samples ao_distance caustics sampler "
-    "filter roulette exposure tone".split()
+    "filter roulette dpi exposure tone".split()
 )
 
 #: Other arguments of renders.

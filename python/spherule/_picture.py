@@ -31,6 +31,7 @@ class Picture:
             layers of camera rays.
         spp: The least and the greatest number of samples of a pixel.
         samples, rays, seconds: Samples and rays of all pixels, and the time of the render.
+        dpi: Pixels per inch on paper, which PNG, TIFF, JPEG and EXR files store; None if it is not known.
         exposure, tone: How it is displayed and saved: stops, and ``"linear"`` or ``"filmic"``.
         title: The title of the scene.
     """
@@ -45,6 +46,7 @@ class Picture:
     samples: int
     rays: int
     seconds: float
+    dpi: int | None
     exposure: float
     tone: str
     title: str
@@ -131,6 +133,7 @@ class Picture:
             "filmic": self._filmic(),
             "bits": bits,
             "quality": quality,
+            "dpi": None if self.dpi is None else _values.integer("dpi", self.dpi, 1, 65535),
             "metadata": metadata,
         }
         return _native.encode(self._floats(), self._matte, table)

@@ -63,7 +63,10 @@ def render(source: Any = None, **options: Unpack[AllOptions]) -> Picture:
             of a scene or a particle file. None for a scene of sections alone.
         **options: Those of :class:`Scene`, unless the source is one, and:
 
-            size: Width and height in pixels, 1 to 65535.
+            size: Width and height in pixels, 1 to 65535; or on paper, as in ``"85mm x 60mm"`` or ``"85mm"``, which keeps
+                the aspect: in mm, cm, in or pt.
+            dpi: Pixels per inch on paper, which files of the picture store; 300 if ``size`` is a length. Letters of
+                annotations are then 7 points large.
             spp: Samples per pixel; the most, if an error or a time stops the render.
             until_error: Stop below this relative error, more than 0 and at most 1.
             time: Stop after so many seconds.

@@ -45,7 +45,11 @@ class Scene:
             percentile of the values as in ``("2%", "98%")``, or ``"auto"``. The map ``"categories"`` is a color for each
             integer; at most 12 different integers of labels such as ``cluster`` or ``mol`` have them without it.
         color_title: The title of the color bar; ``v_x`` and ``m^2`` have subscripts and superscripts.
-        color_bar: True or a position: draw the bar of these colors. A dict is the section of a scene file.
+        color_bar: True or a position, as in ``"top-left"`` or ``"right"``: draw the bar of these colors. A dict is the
+            section of a scene file.
+        legend, axes, scale_bar: True or a position: draw the names that colors stand for, the directions of axes
+            (``"cell"`` or ``"cell:top-left"`` for those of the cell), a length (``20`` or ``"20:bottom"`` for one of
+            20). A dict is the section of a scene file.
         colors: ``"jmol"`` or ``"cpk"``: colors of elements.
         types: For names of types or elements: ``{"radius": 1.2, "color": "gold", "material": "metal"}``, and
             ``"opacity"``.
@@ -82,7 +86,7 @@ class Scene:
         wrap, replicate, show_cell: Wrap particles into the cell; repeat it; draw its edges.
         slices: Planes that cut spheres away, as in ``["z > 50%"]``; ``slice_mode`` is ``"remove"``, ``"caps"`` or
             ``"hide"``.
-        render, look, legend, axes, scale_bar, label, lettering, environment, ground, slice, light, material,
+        render, look, label, lettering, environment, ground, slice, light, material,
             sphere, stick, ellipsoid, cone, triangle, mesh, generate, file, style: Sections, as :mod:`spherule.sections` types
             them.
         triangles: (n, 3, 3) corners of triangles, such as the faces of a wall or of an isosurface; or a dict of these
@@ -113,6 +117,7 @@ class Scene:
         if isinstance(color_bar, Mapping):
             sections["color_bar"] = color_bar
             color_bar = None
+        placed = {name: sections.pop(name) for name in _PLACED if not isinstance(sections.get(name, {}), Mapping)}
         camera = None
         if "camera" in sections and not isinstance(sections["camera"], Mapping):
             camera = _values.path("camera", sections.pop("camera"))
@@ -131,7 +136,7 @@ class Scene:
                 {"text": text, "folder": os.getcwd(), "keys": keys, "triangles": triangles},
                 columns,
                 _style(given),
-                _view(given, color_bar, camera),
+                _view(given, {"color_bar": color_bar, **placed}, camera),
             )
         )
 
@@ -461,9 +466,22 @@ def _numbers(name: str, value: Any) -> str:
     return ",".join(repr(number) for number in _values.items(name, value, _values.number))
 
 
-def _view(given: Mapping[str, Any], color_bar: Any, camera: str | None) -> dict[str, Any]:
-    if color_bar is not None and not isinstance(color_bar, str):
-        color_bar = "bottom-right" if _values.flag("color_bar", color_bar) else None
+#: Annotations that are sections, or words as the program has them, and the position of each where none is given.
+_PLACED = {"legend": "top-right", "axes": "bottom-left", "scale_bar": "bottom-right"}
+
+
+def _placed(name: str, value: Any, usual: str) -> str | None:
+    """The words of an annotation: a position, perhaps after something else."""
+    if value is None or isinstance(value, str):
+        return value
+    if name == "scale_bar" and not isinstance(value, bool):
+        return repr(_values.number(name, value))
+    return usual if _values.flag(name, value) else None
+
+
+def _view(given: Mapping[str, Any], annotations: Mapping[str, Any], camera: str | None) -> dict[str, Any]:
+    usual = {"color_bar": "bottom-right", **_PLACED}
+    placed = {name: _placed(name, annotations.get(name), position) for name, position in usual.items()}
     flags = {name: _values.flag(name, given.get(name, False)) for name in ("wrap", "show_cell")}
     words = {name: _optional(given, name, _values.text) for name in ("preset", "up", "slice_mode")}
     words |= {name: _optional(given, name, _numbers) for name in ("view", "look_at")}
@@ -475,4 +493,4 @@ def _view(given: Mapping[str, Any], color_bar: Any, camera: str | None) -> dict[
             "replicate", replicate, lambda name, copies: _values.integer(name, copies, 1, 2**32 - 1), 3
         )
     slices = _values.items("slices", given.get("slices", ()), _values.text)
-    return {**words, **numbers, **flags, "replicate": replicate, "color_bar": color_bar, "slices": slices}
+    return {**words, **numbers, **flags, "replicate": replicate, **placed, "slices": slices}

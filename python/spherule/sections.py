@@ -29,7 +29,7 @@ SliceMode = Literal["remove", "caps", "hide"]
 class Render(TypedDict, total=False):
     """``[render]``: size, samples, stop conditions and algorithms."""
 
-    size: Sequence[int]
+    size: Sequence[int] | str
     spp: int
     until_error: float
     time: float
@@ -44,6 +44,7 @@ class Render(TypedDict, total=False):
     sampler: Literal["sobol", "stratified", "independent"]
     filter: Literal["box", "gaussian", "blackman-harris"]
     roulette: float | Literal["none", "throughput"]
+    dpi: int
     exposure: float
     tone: Literal["linear", "filmic"]
 
@@ -133,7 +134,7 @@ class Label(_Label, total=False):
 class Lettering(TypedDict, total=False):
     """``[lettering]``: size and color of letters."""
 
-    size: float
+    size: float | str
     color: Color
 
 
@@ -353,9 +354,9 @@ class Sections(TypedDict, total=False):
     render: Render
     camera: Camera
     look: Look
-    legend: Legend
-    axes: Axes
-    scale_bar: ScaleBar
+    legend: Legend | Position | bool
+    axes: Axes | str | bool
+    scale_bar: ScaleBar | str | float | bool
     label: Sequence[Label]
     lettering: Lettering
     environment: Environment

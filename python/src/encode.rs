@@ -10,6 +10,7 @@ use spherule::image::{
 };
 use spherule::overlay;
 use spherule::scene::Tone;
+use std::num::NonZeroU16;
 use std::path::PathBuf;
 
 /// The part of each pixel that is not background, for the alpha of a picture.
@@ -38,6 +39,8 @@ pub(crate) struct EncodeTable {
     filmic: bool,
     bits: u32,
     quality: Option<u8>,
+    /// Pixels per inch; 1 or more.
+    dpi: Option<u16>,
     metadata: Vec<(String, String)>,
 }
 
@@ -73,6 +76,7 @@ pub(crate) fn encode<'py>(
         quality: table.quality.unwrap_or(QUALITY),
         exposure: table.exposure,
         tone: tone(table.filmic),
+        resolution: table.dpi.and_then(NonZeroU16::new),
         metadata,
         ..WriteOptions::default()
     };

@@ -90,6 +90,10 @@ struct ViewTable {
     show_cell: bool,
     /// The position of the color bar.
     color_bar: Option<String>,
+    /// Annotations as options of the program have them: the position, perhaps after something else.
+    legend: Option<String>,
+    axes: Option<String>,
+    scale_bar: Option<String>,
     slices: Vec<String>,
     slice_mode: Option<String>,
 }
@@ -132,6 +136,14 @@ impl From<compose::Fault> for Fault {
         match fault {
             compose::Fault::File(error) => Self::File(error),
             compose::Fault::World(_, error) => error.into(),
+            compose::Fault::Legend { .. } => Self::Text(
+                "`legend` needs particles whose colors stand for elements, types or the texts of `color_by`; use \
+                 `color_bar` for numbers"
+                    .to_owned(),
+            ),
+            compose::Fault::AxesOfCell => {
+                Self::Text("`axes` of the cell need particles with a `cell`".to_owned())
+            }
             // No argument asks for more.
             other => Self::Text(format!("{other:?}")),
         }
@@ -346,6 +358,13 @@ impl ViewTable {
             Anchor::named,
             &Anchor::ALL.map(|(name, _)| name),
         )?;
+        let annotations = AnnotationRequest {
+            color_bar: bar,
+            legend: annotation("legend", self.legend.as_ref(), compose::position)?,
+            axes: annotation("axes", self.axes.as_ref(), str::parse)?,
+            scale_bar: annotation("scale_bar", self.scale_bar.as_ref(), str::parse)?,
+            ..AnnotationRequest::default()
+        };
         let modes = SliceMode::ALL.map(|(name, _)| name);
         let look_at = self.look_at.as_deref().map(str::parse).transpose();
         let (framed, look_at) = match look_at.map_err(|why: String| format!("`look_at`: {why}"))? {
@@ -370,7 +389,7 @@ impl ViewTable {
             },
             up: word("up", self.up.as_ref(), Axis::named, &axes)?,
             cell: CellRequest { wrap, copies, show },
-            annotations: AnnotationRequest { color_bar: bar, ..AnnotationRequest::default() },
+            annotations,
             planes: planes.collect::<Result<_, _>>()?,
             slice_mode: word("slice_mode", self.slice_mode.as_ref(), mode, &modes)?
                 .unwrap_or_default(),
@@ -382,6 +401,16 @@ impl ViewTable {
             None => Ok(request),
         }
     }
+}
+
+/// Parses an annotation, which has this name.
+fn annotation<T>(
+    name: &str,
+    text: Option<&String>,
+    parse: impl Fn(&str) -> Result<T, String>,
+) -> Result<Option<T>, String> {
+    let parsed = text.map(|text| parse(text)).transpose();
+    parsed.map_err(|why| format!("`{name}`: {why}"))
 }
 
 /// The name of arrays in messages, and the title of their scene.

@@ -22,6 +22,7 @@ use spherule::render::{
 use spherule::scene::{Annotations, Identity, Look, Settings, Tone};
 use spherule::split::Part;
 use std::mem::take;
+use std::num::NonZeroU16;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -261,7 +262,9 @@ impl Session {
             cancel,
         )?;
         if !self.annotations.is_empty() {
-            let drawn = annotations::draw(&self.annotations, &self.world, &self.look, false);
+            let resolution = self.settings.dpi;
+            let drawn =
+                annotations::draw(&self.annotations, &self.world, &self.look, resolution, false);
             canvas.draw(|image| drawn.drawing.draw_over(image));
             if !drawn.fits {
                 warnings.push(
@@ -341,6 +344,7 @@ impl Shown {
         table.set_item("pixels", pixels)?;
         table.set_item("matte", matte.map(Matte::of))?;
         table.set_item("title", title)?;
+        table.set_item("dpi", settings.dpi.map(NonZeroU16::get))?;
         table.set_item("exposure", settings.exposure)?;
         table.set_item("tone", if settings.tone == Tone::Filmic { "filmic" } else { "linear" })?;
         table.set_item("spp", (render.samples.least, render.samples.most))?;

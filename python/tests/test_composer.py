@@ -38,7 +38,11 @@ GROUPS = [
         ({"model": "licorice", "bond_radius": 0.1}, ["--model", "licorice", "--bond-radius", "0.1"]),
         ({"bonds": "*-*<3"}, ["--bonds", "*-*<3"]),
     ],
-    [({"opacity": 0.5}, ["--opacity", "0.5"]), ({"translucent": "z > 5"}, ["--translucent", "z > 5"])],
+    [
+        ({"opacity": 0.5}, ["--opacity", "0.5"]),
+        ({"opacity": "30%"}, ["--opacity", "30%"]),
+        ({"translucent": "z > 5"}, ["--translucent", "z > 5"]),
+    ],
     [
         (
             {"styles": {"tags == 1": {"color": "gold", "opacity": 0.5}, "element O": {"visible": False}}},
@@ -52,7 +56,7 @@ GROUPS = [
             {"styles": {"all": {"color": "tags + z", "map": "magma", "range": (0, 9)}}},
             ["--style", "all: color=tags + z map=magma range=0,9"],
         ),
-        ({"styles": {"Z": "radius=2"}}, ["--style", "Z: radius=2"]),
+        ({"styles": {"element Cu": "radius=2"}}, ["--style", "element Cu: radius=2"]),
     ],
     [({"hide": "element O"}, ["--hide", "element O"])],
     [({"types": {"Cu": {"color": "teal", "radius": 0.9}}}, ["--type", "Cu:color=teal,radius=0.9"])],
@@ -63,6 +67,12 @@ GROUPS = [
     ],
     [({"integrator": "ao"}, ["--integrator", "ao"]), ({"depth": 1}, ["--depth", "1"])],
     [({"exposure": 1.0}, ["--exposure", "1"])],
+    [
+        ({"legend": "top-left"}, ["--legend", "top-left"]),
+        ({"axes": True}, ["--axes"]),
+        ({"axes": "cell:left"}, ["--axes", "cell:left"]),
+        ({"scale_bar": "2:bottom"}, ["--scale-bar", "2:bottom"]),
+    ],
 ]
 
 #: Eight atoms in a cell that is periodic along two edges.

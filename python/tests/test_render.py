@@ -204,6 +204,28 @@ def test_pictures_display_and_save_themselves(tmp_path, cloud):
     assert picture.encode("png") != before
 
 
+def test_sizes_on_paper_are_those_of_the_program(program, tmp_path, cloud):
+    path = tmp_path / "cloud.npy"
+    np.save(path, cloud)
+    options = {"size": "30mm", "dpi": 100, "spp": 1, "axes": "top-left", "scale_bar": "0.5"}
+    picture = spherule.render(cloud, radius=0.05, **options)
+    assert (picture.width, picture.height, picture.dpi) == (118, 89, 100)
+    words = ["--size", "30mm", "--dpi", "100", "--spp", "1", "--axes", "top-left", "--scale-bar", "0.5", "--radii", "0.05"]
+    subprocess.run([program, "render", path, "-o", tmp_path / "a.pfm", "--quiet", *words], check=True)
+    assert picture.encode("pfm") == (tmp_path / "a.pfm").read_bytes()
+    at = (png := picture.encode("png")).index(b"pHYs")
+    assert int.from_bytes(png[at + 4 : at + 8], "big") == 3937
+    assert picture.encode("jpg")[13:16] == bytes([1, 0, 100])
+    scene = spherule.Scene(cloud, radius=0.05, lettering={"size": "8pt"}, scale_bar=True, render={"size": (200, 100)})
+    assert scene.render(spp=1).dpi == 300, "for letters on paper"
+    wide = scene.render(size="1in", spp=1)
+    assert (wide.width, wide.height) == (300, 150), "the aspect of the scene"
+    assert spherule.render(cloud, radius=0.05, **SMALL).dpi is None
+    for wrong in ({"size": "85"}, {"dpi": 0}, {"lettering": {"size": "7px"}}, {"axes": "middle"}, {"scale_bar": 0}):
+        with pytest.raises(spherule.Error, match=next(iter(wrong))):
+            spherule.render(cloud, radius=0.05, **{**SMALL, **wrong})
+
+
 def test_refinement_ends_with_the_picture(cloud):
     options = {"radius": 0.05, "size": (160, 120), "spp": 64}
     pictures = list(spherule.refine(cloud, 0.01, **options))

@@ -2,7 +2,9 @@
 
 use super::failure::Failure;
 use clap::Command;
+use spherule_render::compose::{Axes, Bar};
 use spherule_render::scene::Anchor;
+use spherule_render::suggest;
 use std::env;
 use std::ffi::{OsStr, OsString};
 use std::fs;
@@ -45,17 +47,28 @@ fn complete(program: &Command, mut line: Vec<OsString>) -> Result<Vec<OsString>,
     Ok(line)
 }
 
-/// Options whose position may be left out, so that `clap` reads one only after `=`.
-const PLACED: [&str; 3] = ["--legend", "--axes", "--scale-bar"];
+/// Returns whether a text is a value of an option.
+type IsValue = fn(&str) -> bool;
 
-/// Joins such an option and the position after it by `=`, unless a file has that name.
+/// Options whose value may be left out, so that `clap` reads one only after `=`.
+const PLACED: [(&str, IsValue); 3] = [
+    ("--legend", |text| Anchor::named(text).is_some()),
+    ("--axes", |text| text.parse::<Axes>().is_ok()),
+    ("--scale-bar", |text| text.parse::<Bar>().is_ok()),
+];
+
+/// Joins such an option and the value after it by `=`, unless a file has that name. A word that is nearly a position is
+/// no file, either: `clap` refuses it with the positions that there are.
 fn join_positions(line: &mut Vec<OsString>) {
     let mut at = 1;
     while at + 1 < line.len() && line[at] != "--" {
-        let is_placed = line[at].to_str().is_some_and(|option| PLACED.contains(&option));
+        let option = PLACED.iter().find(|(option, _)| line[at] == *option);
         let text = line[at + 1].to_str().unwrap_or_default();
         let position = text.rsplit(':').next().unwrap_or_default();
-        if is_placed && Anchor::named(position).is_some() && !Path::new(text).exists() {
+        let is_near = || suggest::nearest(position, Anchor::ALL.map(|(name, _)| name)).is_some();
+        if option.is_some_and(|(_, is_value)| is_value(text) || is_near())
+            && !Path::new(text).exists()
+        {
             let position = line.remove(at + 1);
             line[at].push("=");
             line[at].push(position);
@@ -122,6 +135,11 @@ mod tests {
         let joined = |words: &[&str]| completed(words).expect("a line")[2..].to_vec();
         assert_eq!(joined(&["-", "--legend", "top-left"]), ["-", "--legend=top-left"]);
         assert_eq!(joined(&["--axes", "cell:top", "-"]), ["--axes=cell:top", "-"]);
+        assert_eq!(joined(&["--axes", "cell", "-"]), ["--axes=cell", "-"]);
+        assert_eq!(joined(&["--scale-bar", "2.5"]), ["--scale-bar=2.5"]);
+        assert_eq!(joined(&["--legend", "topleft"]), ["--legend=topleft"]);
+        assert_eq!(joined(&["--legend", "missing.xyz"]), ["--legend", "missing.xyz"]);
+        assert_eq!(joined(&["--legend", "-"]), ["--legend", "-"]);
         assert_eq!(joined(&["--scale-bar", "10:right"]), ["--scale-bar=10:right"]);
         assert_eq!(joined(&["--legend", "Cargo.toml"]), ["--legend", "Cargo.toml"]);
         assert_eq!(joined(&["--", "--legend", "top"]), ["--", "--legend", "top"]);

@@ -163,16 +163,37 @@ impl Failure {
 }
 
 /// Options of other programs, and those of this one that do the same.
-const OTHERS: [(&str, &str); 9] = [
-    ("--hide", "--select"),
-    ("--filter-by", "--select"),
-    ("--camera", "--view"),
-    ("--rotate", "--turntable"),
-    ("--transparent", "--opacity"),
-    ("--transparency", "--opacity"),
-    ("--title", "--label"),
-    ("--text", "--label"),
-    ("--colour-by", "--color-by"),
+const OTHERS: &[(&str, &[&str])] = &[
+    ("--hide", &["--select"]),
+    ("--filter-by", &["--select"]),
+    ("--camera", &["--view"]),
+    ("--rotate", &["--view", "--roll", "--turntable"]),
+    ("--rotation", &["--view", "--roll", "--turntable"]),
+    ("--fov", &["--zoom", "--projection"]),
+    ("--transparent", &["--background transparent", "--opacity"]),
+    ("--transparency", &["--opacity"]),
+    ("--alpha", &["--opacity"]),
+    ("--title", &["--label"]),
+    ("--caption", &["--label"]),
+    ("--text", &["--label"]),
+    ("--font-size", &["--text-size"]),
+    ("--fontsize", &["--text-size"]),
+    ("--resolution", &["--size", "--dpi"]),
+    ("--res", &["--size", "--dpi"]),
+    ("--ppi", &["--dpi"]),
+    ("--width", &["--size"]),
+    ("--height", &["--size"]),
+    ("--figsize", &["--size"]),
+    ("--background-color", &["--background"]),
+    ("--bgcolor", &["--background"]),
+    ("--bg", &["--background"]),
+    ("--colormap", &["--color-map"]),
+    ("--cmap", &["--color-map"]),
+    ("--colorbar", &["--color-bar"]),
+    ("--colour-by", &["--color-by"]),
+    ("--radius", &["--radii", "--radius-scale"]),
+    ("--samples", &["--spp"]),
+    ("--out", &["--output"]),
 ];
 
 /// Similarity of an unknown option to one that is suggested, 0 to 1, below which the suggestion misleads.
@@ -189,16 +210,19 @@ fn with_better_tip(mut error: clap::Error) -> clap::Error {
         return error;
     }
     let same = OTHERS.iter().find(|(other, _)| *other == unknown).map(|(_, own)| *own);
-    let tip = text(&error, ContextKind::SuggestedArg);
-    let is_like = |tip: &String| strsim::normalized_damerau_levenshtein(&unknown, tip) >= LIKENESS;
-    let better = same.map(str::to_owned).or_else(|| tip.clone().filter(is_like));
-    if better != tip {
+    if let Some(same) = same {
         error.remove(ContextKind::SuggestedArg);
         // It is that of the option that was suggested.
         error.remove(ContextKind::Usage);
+        let same = same.iter().map(|&own| own.to_owned()).collect();
+        error.insert(ContextKind::SuggestedArg, ContextValue::Strings(same));
+        return error;
     }
-    if let Some(better) = better {
-        error.insert(ContextKind::SuggestedArg, ContextValue::String(better));
+    let tip = text(&error, ContextKind::SuggestedArg);
+    let is_like = |tip: &String| strsim::normalized_damerau_levenshtein(&unknown, tip) >= LIKENESS;
+    if tip.is_some_and(|tip| !is_like(&tip)) {
+        error.remove(ContextKind::SuggestedArg);
+        error.remove(ContextKind::Usage);
     }
     error
 }

@@ -135,6 +135,94 @@ fn pages_hold_the_image_and_its_metadata() {
     assert!(folder.read("b.pdf").starts_with(b"\x89PNG"));
 }
 
+/// Returns the bytes after a word of a file.
+fn after(folder: &Folder, name: &str, word: &[u8]) -> Vec<u8> {
+    let bytes = folder.read(name);
+    let at = bytes.windows(word.len()).position(|part| part == word).expect("it is there");
+    bytes[at + word.len()..].to_vec()
+}
+
+#[test]
+fn figures_have_their_size_on_paper() {
+    let folder = folder();
+    let picture = |name: &str, args: &[&str]| {
+        let fixed = ["a.xyz", "--radii", "0.5", "--spp", "1", "--quiet", "-o", name];
+        folder.succeed(&[&fixed[..], args].concat());
+    };
+    // 30 mm at 254 pixels per inch are 300 pixels, in the usual aspect.
+    picture("a.png", &["--size", "30mm", "--dpi", "254"]);
+    let image = Image::read(folder.path("a.png")).expect("a picture");
+    assert_eq!((image.width, image.height), (300, 225));
+    assert_eq!(after(&folder, "a.png", b"pHYs")[..4], 10_000_u32.to_be_bytes());
+    let metadata = read_metadata(folder.path("a.png")).expect("metadata");
+    assert_eq!(metadata.value("dpi"), Some("254"));
+    picture("a.jpg", &["--size", "1cmx5mm"]);
+    assert_eq!(after(&folder, "a.jpg", b"JFIF\0")[2..5], [1, 1, 44]);
+    let image = Image::read(folder.path("a.jpg")).expect("a picture");
+    assert_eq!((image.width, image.height), (118, 59));
+    // Letters of 7 points at 144 pixels per inch.
+    let bar = ["--color-by", "q", "--color-bar", "right", "--size", "5inx4in", "--dpi", "144"];
+    picture("a.svg", &bar);
+    let svg = text(&folder.read("a.svg"));
+    assert!(svg.contains("width=\"127mm\" height=\"101.6mm\" viewBox=\"0 0 720 576\""));
+    assert!(svg.contains("font-size=\"14\""), "{svg}");
+    picture("a.pdf", &bar);
+    assert!(after(&folder, "a.pdf", b"/MediaBox [").starts_with(b"0 0 360 288]"));
+    let size = ["--size", "400x300", "--scale-bar", "top", "--text-size"];
+    for (letters, expected) in [("6pt", "25"), ("2.54mm", "30"), ("5%", "15")] {
+        picture("b.svg", &[&size[..], &[letters]].concat());
+        let svg = text(&folder.read("b.svg"));
+        assert!(svg.contains(&format!("font-size=\"{expected}\"")), "{letters}: {svg}");
+        // Letters on paper give the image a resolution.
+        assert_eq!(svg.contains("width=\"33.867mm\""), letters != "5%", "{letters}");
+    }
+    // A bar in a file is as the image is.
+    let file = ["--color-by", "q", "--color-bar", "c.svg", "--size", "2inx2in", "--dpi", "144"];
+    picture("c.png", &file);
+    let svg = text(&folder.read("c.svg"));
+    assert!(svg.contains("font-size=\"14\"") && svg.contains("mm\" height"), "{svg}");
+}
+
+#[test]
+fn lengths_of_scenes_follow_the_resolution() {
+    let folder = folder();
+    let scene = "[render]\nsize = \"2inx1in\"\ndpi = 100\n[lettering]\nsize = \"9pt\"\n[[label]]\ntext = \"a\"\n\
+                 [[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n";
+    folder.write("a.toml", scene);
+    let drawn = |args: &[&str]| {
+        let fixed = ["a.toml", "--spp", "1", "--quiet", "-o", "a.svg"];
+        folder.succeed(&[&fixed[..], args].concat());
+        text(&folder.read("a.svg"))
+    };
+    for (dpi, args) in [(100.0, &[][..]), (200.0, &["--dpi", "200"])] {
+        let (svg, width) = (drawn(args), 2.0 * dpi);
+        assert!(svg.contains(&format!(
+            "width=\"50.8mm\" height=\"25.4mm\" viewBox=\"0 0 {width} {dpi}\""
+        )));
+        assert!(svg.contains(&format!("font-size=\"{}\"", dpi / 8.0)), "{svg}");
+    }
+    // Of the scene's size, a width keeps the aspect.
+    assert!(drawn(&["--size", "1in"]).contains("viewBox=\"0 0 100 50\""));
+    assert!(drawn(&["--size", "90x60"]).contains("viewBox=\"0 0 90 60\""));
+    for (line, message) in
+        [("size = \"2\"", "85mm"), ("dpi = 0", "65535"), ("dpi = 1.5", "integer")]
+    {
+        folder.write("b.toml", &format!("[render]\n{line}\n"));
+        let error = text(&folder.run(&["b.toml"]).stderr);
+        assert!(error.contains("b.toml:2") && error.contains(message), "{error}");
+    }
+}
+
+#[test]
+fn positions_follow_a_space_and_shares_are_percentages() {
+    let folder = folder();
+    let spaced = ["--legend", "left", "--axes", "cell", "--scale-bar", "0.5", "--opacity", "30%"];
+    render(&folder, &[&spaced[..], &["-o", "a.pfm"]].concat());
+    let joined = ["--legend=left", "--axes=cell", "--scale-bar=0.5", "--opacity=0.3"];
+    render(&folder, &[&joined[..], &["-o", "b.pfm"]].concat());
+    assert!(folder.read("a.pfm") == folder.read("b.pfm"));
+}
+
 #[test]
 fn scenes_have_annotations_too() {
     let folder = folder();
@@ -209,6 +297,8 @@ fn mistakes_are_reported() {
         (&["--label", "{tme}"], "did you mean `time`?"),
         (&["--label", "{time"], "not closed"),
         (&["--text-size", "2"], "0.005 to 0.2"),
+        (&["--text-size", "7px"], "7pt"),
+        (&["--legend", "topleft"], "`top-left`"),
         (&["--text-color", "blak"], "black"),
         (&["--color-by", "q", "--legend"], "use --color-bar"),
         (&["--label", "a", "--region", "0,0,8x8"], "need the whole image"),

@@ -2,10 +2,12 @@
 //!
 //! [`Settings`] are their values; [`SETTINGS`] is a table with a row for each.
 
+mod length;
 mod limits;
 mod table;
 
-pub use limits::Limits;
+pub use length::{Length, Paper, paper_size};
+pub use limits::{Limits, share};
 pub use table::{
     INTEGRATORS, Kind, Names, Need, Role, SAMPLERS, SETTINGS, Scope, Setting, TONES, Value, manual,
 };
@@ -14,6 +16,7 @@ pub use crate::image::tone::Tone;
 
 use crate::image::tone;
 use serde::{Deserialize, Serialize};
+use std::num::NonZeroU16;
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
@@ -24,6 +27,10 @@ pub struct Settings {
     pub width: u32,
     /// Pixels, [`Settings::PIXELS`].
     pub height: u32,
+    /// Pixels per inch on paper; `None` if it is not known.
+    pub dpi: Option<NonZeroU16>,
+    /// The size on paper that the pixels come from; without effect once these are others: see [`Settings::paper`].
+    pub paper: Option<Paper>,
     /// Samples per pixel, [`Settings::SAMPLES`]; with `until_error` or `time`, the maximum.
     pub spp: u32,
     /// Error that stops the render, more than 0 and at most 1: the root of the mean squared error of
@@ -171,6 +178,29 @@ impl Settings {
         }
     }
 
+    /// Returns the size on paper, if that is what the pixels come from.
+    pub fn paper(&self) -> Option<Paper> {
+        let resolution = self.dpi?;
+        self.paper.filter(|paper| paper.pixels(resolution) == [self.width, self.height])
+    }
+
+    /// Sets the size on paper, and the pixels that it is; the resolution is 300 if there is none.
+    fn set_paper(&mut self, paper: Paper) {
+        let resolution = *self.dpi.get_or_insert(Length::RESOLUTION);
+        [self.width, self.height] = paper.pixels(resolution);
+        self.paper = Some(paper);
+    }
+
+    /// Sets the resolution, and the pixels of an image whose size on paper is given.
+    fn set_resolution(&mut self, dpi: Option<NonZeroU16>) {
+        let paper = self.paper();
+        self.dpi = dpi;
+        self.paper = None;
+        if let Some(paper) = paper {
+            self.set_paper(paper);
+        }
+    }
+
     /// Width and height of an image in pixels.
     pub const PIXELS: RangeInclusive<u32> = 1..=65_535;
 
@@ -210,6 +240,8 @@ impl Default for Settings {
         Self {
             width: 800,
             height: 600,
+            dpi: None,
+            paper: None,
             spp: 16,
             until_error: None,
             time: None,
@@ -245,6 +277,8 @@ mod tests {
         let settings = |(integrator, roulette)| Settings {
             width: 800,
             height: 600,
+            dpi: NonZeroU16::new(300),
+            paper: Some(Paper::new(Length::points(192), None, [800, 600])),
             spp: 16,
             until_error: Some(0.25),
             time: Some(Duration::from_millis(1500)),

@@ -2,8 +2,8 @@
 
 use super::lists::{self, List};
 use super::with_text::{self, WithText};
-use spherule_render::compose::{AnnotationRequest, Axes, Bar, LabelText, ink, position, text_size};
-use spherule_render::scene::{Anchor, Rgb};
+use spherule_render::compose::{AnnotationRequest, Axes, Bar, LabelText, ink, position};
+use spherule_render::scene::{Anchor, LetterSize, Rgb};
 use std::str::FromStr;
 
 /// Options for annotations.
@@ -57,10 +57,15 @@ pub(in crate::cli) struct AnnotationArgs {
         value_parser = |text: &str| text.parse::<WithText<LabelText>>()
     )]
     labels: Vec<WithText<LabelText>>,
-    /// Size of letters as a fraction of the image's smaller side, 0.005 to 0.2; smaller where annotations would
-    /// overlap [default: 0.03]
-    #[arg(long, value_name = "SHARE", allow_hyphen_values = true, value_parser = text_size)]
-    text_size: Option<f64>,
+    /// Size of letters: on paper, as in 7pt or 2.5mm, or as a fraction of the image's smaller side, 0.005 to 0.2;
+    /// smaller where annotations would overlap [default: 7pt if --size is a length or --dpi is given, or else 0.03]
+    #[arg(
+        long,
+        value_name = "LENGTH|SHARE",
+        allow_hyphen_values = true,
+        value_parser = |text: &str| text.parse::<WithText<LetterSize>>()
+    )]
+    text_size: Option<WithText<LetterSize>>,
     /// Color of letters: #rrggbb or a CSS name [default: dark or light, in contrast with the background]
     #[arg(long, value_name = "COLOR", value_parser = |text: &str| text.parse::<WithText<Ink>>())]
     text_color: Option<WithText<Ink>>,
@@ -79,14 +84,14 @@ impl AnnotationArgs {
         with_text::insert(&mut list, "axes", &self.axes);
         with_text::insert(&mut list, "scale_bar", &self.scale_bar);
         with_text::insert(&mut list, "label", &self.labels);
-        lists::put(&mut list, "text_size", self.text_size);
+        with_text::insert(&mut list, "text_size", &self.text_size);
         with_text::insert(&mut list, "text_color", &self.text_color);
         list
     }
 
     /// Returns the name of an option for letters, if one is given.
     pub(in crate::cli) fn lettering(&self) -> Option<&'static str> {
-        let size = self.text_size.map(|_| "--text-size");
+        let size = self.text_size.as_ref().map(|_| "--text-size");
         size.or_else(|| self.text_color.as_ref().map(|_| "--text-color"))
     }
 
@@ -98,7 +103,7 @@ impl AnnotationArgs {
             axes: self.axes.as_deref().copied(),
             scale_bar: self.scale_bar.as_deref().copied(),
             labels: self.labels.iter().map(|label| (**label).clone()).collect(),
-            text_size: self.text_size,
+            text_size: self.text_size.as_deref().copied(),
             text_color: self.text_color.as_deref().map(|ink| ink.0),
         }
     }

@@ -75,7 +75,7 @@ pub(in crate::cli) struct AppearanceArgs {
     /// Radius of the sticks of bonds, in the file's unit [default: a tenth of the median radius, 0.15 in licorice]
     #[arg(long, value_name = "R", value_parser = values::positive)]
     bond_radius: Option<f64>,
-    /// Opacity of particles, and of their bonds: a number from 0 to 1, or a column or expression whose numbers it is,
+    /// Opacity of particles, and of their bonds: a number from 0 to 1, as in 0.3 or 30%, or a column or expression whose numbers it is,
     /// perhaps with those that become 0 and 1, as in charge:-1,1. What is behind is seen without refraction, and shadows are as
     /// thin [default: 1, or 0.2 with --translucent]
     #[arg(

@@ -6,6 +6,7 @@ use spherule_render::film::Region;
 use spherule_render::image::{Depth, Format, WriteOptions};
 use spherule_render::scene::Settings;
 use spherule_render::settings::{self, Role, Scope, TONES};
+use std::num::NonZeroU16;
 
 /// Names and values, in order.
 pub(in crate::cli) type List = Map<String, Value>;
@@ -43,13 +44,14 @@ pub(in crate::cli) fn of_settings(settings: &Settings, region: Region) -> List {
             settings::Value::Whole(number) => json!(number),
             settings::Value::Number(number) => json!(number),
             settings::Value::Word(word) => json!(word),
+            settings::Value::Paper { .. } => json!(setting.get(settings).to_string()),
         };
         list.insert(setting.name.to_owned(), value);
     }
     list
 }
 
-/// Lists exposure and tone curve; nothing for formats that store linear radiance.
+/// Lists the resolution, and for formats that do not store linear radiance exposure and tone curve.
 pub(in crate::cli) fn of_encoding(format: Format, options: &WriteOptions) -> List {
     let mut list = List::new();
     if !format.is_linear() {
@@ -57,6 +59,7 @@ pub(in crate::cli) fn of_encoding(format: Format, options: &WriteOptions) -> Lis
         list.insert("tone".to_owned(), json!(TONES.name(&options.tone)));
         list.insert("bits".to_owned(), json!(bits(options.depth)));
     }
+    put(&mut list, "dpi", options.resolution.map(NonZeroU16::get));
     if format == Format::Jpeg {
         list.insert("quality".to_owned(), json!(options.quality));
     }

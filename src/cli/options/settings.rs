@@ -41,15 +41,6 @@ impl<const DISPLAY: bool> SettingArgs<DISPLAY> {
 }
 
 impl SettingArgs<false> {
-    /// Returns the image size, if it is given.
-    #[cfg(feature = "view")]
-    pub(in crate::cli) fn size(&self) -> Option<[u32; 2]> {
-        match self.value("size") {
-            Some(Value::Size(size)) => Some(size),
-            _ => None,
-        }
-    }
-
     /// Returns the number of samples per pixel, if it is given.
     pub(in crate::cli) fn spp(&self) -> Option<u32> {
         self.whole("spp").map(|spp| spp as u32)
@@ -117,7 +108,7 @@ fn option(setting: &'static Setting) -> Arg {
                 .try_map(move |name| word(&name).map(Value::Word).ok_or("not one of the names"));
             return option.value_name(name.to_uppercase()).value_parser(parser);
         }
-        Kind::Size => "WxH",
+        Kind::Size => "WxH|LENGTH",
         Kind::Whole { .. } => "N",
         Kind::Number { placeholder, .. } => *placeholder,
         Kind::Error => "PERCENT",

@@ -2,7 +2,7 @@
 
 use spherule_render::film::Region;
 use spherule_render::scene::Settings;
-use spherule_render::settings::{Kind, Value};
+use spherule_render::settings::{Kind, Value, paper_size, share};
 use spherule_render::suggest;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
@@ -45,6 +45,9 @@ pub(in crate::cli) fn setting(kind: &Kind, text: &str) -> Result<Value, String> 
             return time(text).map(seconds).map(number_or_none);
         }
         Kind::Whole { words, .. } => (words, number(text).map(Value::Whole)),
+        Kind::Number { words, limits, .. } if limits.is_share() => {
+            (words, share(text).map(Value::Number))
+        }
         Kind::Number { words, .. } => (words, number(text).map(Value::Number)),
         Kind::Choice(_) | Kind::Flag => (&[] as &[_], None),
     };
@@ -76,12 +79,16 @@ fn number_or_none(number: Option<f64>) -> Value {
     number.map_or(Value::None, Value::Number)
 }
 
-/// `WxH`.
+/// `WxH`, or lengths on paper.
 fn size(text: &str) -> Result<Value, String> {
     let size = pair(text).map(|(width, height)| Value::Size([width, height]));
-    size.filter(|size| Kind::Size.contains(*size)).ok_or_else(|| {
+    let size = size.filter(|size| Kind::Size.contains(*size));
+    size.or_else(|| paper_size(text).ok()).ok_or_else(|| {
         let (least, most) = (PIXELS.start(), PIXELS.end());
-        format!("give width and height, {least} to {most} pixels each, as in 1280x720")
+        format!(
+            "give width and height, {least} to {most} pixels each, as in 1280x720, or lengths in mm, cm, in or pt, \
+             as in 85mm or 85mmx60mm"
+        )
     })
 }
 
@@ -106,21 +113,20 @@ fn error(text: &str) -> Result<OrNone<f64>, String> {
     if text == "none" {
         return Ok(OrNone(None));
     }
-    let share = |digits: &str| {
-        let percent: f64 = number(digits)?;
-        Some(percent / 100.0).filter(|share| *share > 0.0 && *share <= 1.0)
-    };
-    let given = text.strip_suffix('%').and_then(share);
-    given.map(|share| OrNone(Some(share))).ok_or_else(|| {
-        let bare: Option<f64> = number(text).filter(|value: &f64| *value > 0.0 && *value <= 100.0);
-        bare.map_or_else(
-            || {
-                "give a relative error greater than 0% and at most 100%, as in 1%, or none"
-                    .to_owned()
-            },
-            |percent| format!("give the percent sign, as in {percent}%, or none"),
-        )
-    })
+    let given = share(text).filter(|share| *share > 0.0 && *share <= 1.0);
+    given.filter(|_| text.trim_end().ends_with('%')).map(|share| OrNone(Some(share))).ok_or_else(
+        || {
+            let bare: Option<f64> =
+                number(text).filter(|value: &f64| *value > 0.0 && *value <= 100.0);
+            bare.map_or_else(
+                || {
+                    "give a relative error greater than 0% and at most 100%, as in 1%, or none"
+                        .to_owned()
+                },
+                |percent| format!("give the percent sign, as in {percent}%, or none"),
+            )
+        },
+    )
 }
 
 /// `90s`, `5m`, `1h 30m` or `none`.
@@ -154,7 +160,8 @@ pub(in crate::cli) fn radii(text: &str) -> Result<Radii, String> {
 
 /// `DIFFUSE,METAL,GLASS`.
 pub(in crate::cli) fn mix(text: &str) -> Result<[f64; 3], String> {
-    let shares: Option<Vec<f64>> = text.split(',').map(|share| finite(share).ok()).collect();
+    let shares: Option<Vec<f64>> =
+        text.split(',').map(|text| share(text).filter(|share| share.is_finite())).collect();
     shares.and_then(|shares| shares.try_into().ok()).ok_or_else(|| {
         "give the fractions of diffuse, metal and glass spheres, as in 0.6,0.3,0.1".to_owned()
     })
@@ -208,6 +215,9 @@ mod tests {
     fn sizes_and_regions_are_read() {
         assert_eq!(set("size", "1280x720"), Ok(Value::Size([1280, 720])));
         assert_eq!(set("size", "65535X1"), Ok(Value::Size([65_535, 1])));
+        let (width, height) = ("85mm".parse().unwrap(), "60mm".parse().ok());
+        assert_eq!(set("size", "85mm"), Ok(Value::Paper { width, height: None }));
+        assert_eq!(set("size", "8.5cmx60mm"), Ok(Value::Paper { width, height }));
         let expected = Region { x: 3, y: 4, width: 5, height: 6 };
         assert_eq!(region("3,4,5x6"), Ok(expected));
         assert_eq!(region("3, 4, 5x6"), Ok(expected));
@@ -215,9 +225,10 @@ mod tests {
 
     #[test]
     fn values_out_of_range_are_refused() {
-        let cases: [(&str, &[&str]); 9] = [
+        let cases: [(&str, &[&str]); 10] = [
             ("size", &["0x5", "5x0", "70000x1", "5", "x", "-1x5", "1.5x2", "99999999999x1", ""]),
             ("spp", &["0", "-1", "1.5", "16777217", "many"]),
+            ("dpi", &["0", "-1", "72.5", "65536", "high"]),
             ("roulette", &["0", "1.01", "-0.5", "NaN", "inf", "some"]),
             ("exposure", &["NaN", "inf", "101", "-101", "bright"]),
             ("ao_distance", &["-1", "NaN", "-inf"]),
@@ -247,6 +258,8 @@ mod tests {
     fn ranges_are_inclusive() {
         let cases = [
             ("roulette", "1", Value::Number(1.0)),
+            ("roulette", "50%", Value::Number(0.5)),
+            ("dpi", "300", Value::Whole(300)),
             ("roulette", "none", Value::Word("none")),
             ("until_error", "100%", Value::Number(1.0)),
             ("until_error", "2.5 %", Value::Number(0.025)),
@@ -265,6 +278,7 @@ mod tests {
         }
         assert_eq!(radii("2"), Ok(Radii { least: 2.0, greatest: 2.0 }));
         assert_eq!(mix("1,0,2"), Ok([1.0, 0.0, 2.0]));
+        assert_eq!(mix("60%,30%,0.1"), Ok([0.6, 0.3, 0.1]));
     }
 
     #[test]

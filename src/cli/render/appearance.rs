@@ -9,7 +9,8 @@ use spherule_render::overlay::Canvas;
 use spherule_render::overlay::annotations::{self, AnnotationDrawing};
 use spherule_render::overlay::color_bar::Bar;
 use spherule_render::scene::particles::Legend;
-use spherule_render::scene::{Annotations, Look};
+use spherule_render::scene::{Annotations, Lettering, Look, Settings};
+use std::num::NonZeroU16;
 
 /// Checks that the color bar can be written, without changing anything.
 pub(in crate::cli) fn check_bar(setup: &RenderSetup) -> Result<(), Failure> {
@@ -30,18 +31,22 @@ pub(in crate::cli) fn check_legend(
     Err(Failure::usage("render", message))
 }
 
-/// Writes the color bar, as high as the image, if it has a file; an error if colors do not represent numbers.
+/// Writes the color bar, as high as the image, if it has a file; an error if colors do not represent numbers. If the image
+/// has a resolution, the letters are as large as those of annotations.
 pub(in crate::cli) fn write_bar(
     setup: &RenderSetup,
     legend: Option<&Legend>,
-    height: u32,
+    settings: &Settings,
 ) -> Result<(), Failure> {
     check_legend(setup, legend)?;
     let (Some(BarPlace::File(path, format)), Some(legend)) = (setup.color_bar, legend) else {
         return Ok(());
     };
     let Legend { scale, label } = legend;
-    let bar = Bar::file(scale, label, height, *format)?;
+    let Settings { width, height, dpi, .. } = *settings;
+    let lettering = Lettering { size: setup.request.annotations.text_size, ..Lettering::default() };
+    let letter = dpi.map(|_| lettering.pixels((width, height), dpi));
+    let bar = Bar::file(scale, label, height, letter, *format, dpi)?;
     write_file(path, &bar)
 }
 
@@ -49,10 +54,11 @@ pub(in crate::cli) fn write_bar(
 pub(super) const OVERLAP: &str =
     "annotations overlap: make the image larger, or use fewer or a smaller --text-size";
 
-/// Draws the annotations of a scene over an image; returns whether all of them have room.
+/// Draws the annotations of a scene over an image, which may have a `resolution` in pixels per inch; returns whether all of them have room.
 pub(in crate::cli) fn draw_annotations(
     scene: (&Annotations, &Look),
     world: &World,
+    resolution: Option<NonZeroU16>,
     canvas: &mut Canvas,
     turns: bool,
 ) -> bool {
@@ -60,7 +66,8 @@ pub(in crate::cli) fn draw_annotations(
     if annotations.is_empty() {
         return true;
     }
-    let AnnotationDrawing { drawing, fits } = annotations::draw(annotations, world, look, turns);
+    let AnnotationDrawing { drawing, fits } =
+        annotations::draw(annotations, world, look, resolution, turns);
     canvas.draw(|image| drawing.draw_over(image));
     fits
 }

@@ -25,6 +25,7 @@ Examples:
   spherule render run.lammpstrj.gz --frame all -o frame-%04d.png
   spherule render run.lammpstrj.gz --frame all --turntable 360 --fps 24 -o video.mp4
   spherule render run.lammpstrj.gz --frame all -o frame-%04d.png --skip-existing --part 2/4
+  spherule render run.gro --size 85mm --dpi 600 --legend -o figure.tif      letters of 7pt
   spherule render run.dump --color-by c_pe --color-map inferno --color-bar energy.svg
   spherule render run.gro --legend --axes --scale-bar --label 't = {time} ps' -o figure.pdf
   spherule render protein.pdb --aperture 6 --focus id:1234 -o depth-of-field.png

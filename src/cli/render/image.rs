@@ -60,7 +60,7 @@ pub(super) fn render_placed(
     session: &mut Session,
     resumed: Option<Resumed>,
 ) -> Result<ExitCode, Failure> {
-    write_bar(setup, placed.legend.as_ref(), placed.scene.settings.height)?;
+    write_bar(setup, placed.legend.as_ref(), &placed.scene.settings)?;
     // After a signal, checks are left out: the render is interrupted at once and saved.
     if resumed.is_none()
         && signals::end_pause().is_none()
@@ -163,7 +163,8 @@ fn draw_over(
     let mut canvas = Canvas::with_look(look, world, settings, region, render, &never)?;
     if setup.page.is_none() {
         let turns = setup.turn.is_some();
-        if !draw_annotations((annotations, look), &prepared.world, &mut canvas, turns) {
+        let scene = (annotations, look);
+        if !draw_annotations(scene, &prepared.world, settings.dpi, &mut canvas, turns) {
             session.notices.warn(appearance::OVERLAP);
         }
     }

@@ -139,6 +139,7 @@ impl Subject<'_> {
             ppm: typed.ppm.unwrap_or_default(),
             exposure: settings.exposure,
             tone: settings.tone,
+            resolution: settings.dpi.filter(|_| format.has_resolution()),
             metadata: Metadata::new(),
         }
     }

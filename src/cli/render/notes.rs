@@ -1,13 +1,14 @@
 //! Notes about options that have no effect.
 
 use super::setup::RenderSetup;
+use crate::cli::options::appearance::BarPlace;
 use crate::cli::options::settings::option_name;
 use crate::cli::source::Source;
 use spherule_render::World;
 use spherule_render::compose::Staged;
 use spherule_render::graphics;
 use spherule_render::image::{Depth, Format};
-use spherule_render::scene::{Integrator, Scene, Settings, Tone};
+use spherule_render::scene::{Integrator, LetterSize, Scene, Settings, Tone};
 use spherule_render::settings::{INTEGRATORS, Need, Scope, Setting, Value};
 use spherule_render::trace::Traversal;
 
@@ -67,6 +68,12 @@ pub(super) fn notes(setup: &RenderSetup, scene: &Scene, world: &World) -> Vec<St
         "the lens is a pinhole; set --aperture",
     );
     let bare = scene.annotations.is_empty();
+    let sizes = settings.paper().is_some()
+        || matches!(setup.color_bar, Some(BarPlace::File(..)))
+        || !bare && !matches!(scene.annotations.lettering.size, Some(LetterSize::Share(_)));
+    let unsized_file = !setup.format.has_resolution() && !sizes;
+    let why = "the output's format stores no resolution";
+    note(encoding.display.value("dpi").is_some(), unsized_file, "--dpi", why);
     let letters = setup.annotations.lettering();
     note(letters.is_some(), bare, letters.unwrap_or_default(), "the image has no annotations");
     notes

@@ -17,14 +17,16 @@ pub(super) fn file(
     options: &WriteOptions,
 ) -> Result<Vec<u8>, Failure> {
     let Some(format) = setup.page else { return Ok(image) };
-    let Scene { annotations, look, .. } = &prepared.scene;
+    let Scene { annotations, look, settings, .. } = &prepared.scene;
     let turns = setup.turn.is_some();
-    let drawing = annotations::draw(annotations, &prepared.world, look, turns).drawing;
+    let world = &prepared.world;
+    let drawing = annotations::draw(annotations, world, look, settings.dpi, turns).drawing;
     let page = Page {
         size: (prepared.region.width, prepared.region.height),
         picture: Some(&image),
         drawing: &drawing,
         display: DisplayTransform::nearest(options.exposure, options.tone),
+        resolution: options.resolution,
         metadata: &options.metadata,
     };
     Ok(page.file(format)?)

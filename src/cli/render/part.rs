@@ -86,8 +86,9 @@ pub(super) fn caption(setup: &RenderSetup, prepared: &Prepared) -> Caption {
 
 /// Returns the drawing of the annotations over the whole image.
 fn annotation_drawing(setup: &RenderSetup, prepared: &Prepared) -> AnnotationDrawing {
-    let Scene { look, annotations, .. } = &prepared.scene;
-    annotations::draw(annotations, &prepared.world, look, setup.turn.is_some())
+    let Scene { look, annotations, settings, .. } = &prepared.scene;
+    let turns = setup.turn.is_some();
+    annotations::draw(annotations, &prepared.world, look, settings.dpi, turns)
 }
 
 /// Completes the file of a part, and prints a summary.

@@ -25,7 +25,7 @@ pub(super) fn write(setup: &RenderSetup, file: &Path) -> Result<ExitCode, Failur
         // The program's own stop is chosen again when the file is rendered.
         (settings.until_error, settings.spp) = (None, Settings::default().spp);
     }
-    write_bar(setup, placed.legend.as_ref(), placed.scene.settings.height)?;
+    write_bar(setup, placed.legend.as_ref(), &placed.scene.settings)?;
     let identity = placed.identity.take().unwrap_or_else(|| Identity::of(&placed.scene));
     let mut built = placed.build(setup)?;
     built.report(setup, &mut Notices::default());

@@ -273,17 +273,16 @@ impl<'a> RenderSetup<'a> {
     }
 }
 
-/// Returns what the options ask of the scene; of a part of an image, the settings of its display, too, since the image
-/// is written elsewhere.
+/// Returns what the options ask of the scene, with the resolution, since sizes depend on it; of a part of an image, all
+/// settings of its display, too, since the image is written elsewhere.
 fn request(args: &RenderArgs, style: ParticleStyle, part: bool) -> Result<Request, Failure> {
     let bar = match &args.looks.color_bar {
         Some(BarPlace::Inside(position)) => Some(*position),
         Some(BarPlace::File(..)) | None => None,
     };
     let mut settings = args.picture.settings.values().to_vec();
-    if part {
-        settings.extend(args.encoding.display.values());
-    }
+    let display = args.encoding.display.values().iter();
+    settings.extend(display.filter(|(name, _)| part || *name == "dpi"));
     let request = Request {
         style,
         cell: args.views.cell(),

@@ -198,7 +198,7 @@ impl Headless {
             return save_scene(&seen, &renderer.stage.scene, renderer.stage.origin.as_ref(), path);
         }
         save_picture(&seen, path)?;
-        save_bar(&self.setup, &viewer.facts, settings.height)
+        save_bar(&self.setup, &viewer.facts, &settings)
     }
 
     /// Writes the contents of the window.

@@ -122,7 +122,9 @@ impl Renderer {
             let plain = || OverlaidImage { image: image.clone(), matte: None };
             let OverlaidImage { image, matte } = drawn.get_or_insert_with(plain);
             let mut canvas = Canvas { image, matte: matte.take() };
-            draw_annotations((&self.annotations, &request.look), world, &mut canvas, false);
+            let resolution = request.settings.dpi;
+            let scene = (&self.annotations, &request.look);
+            draw_annotations(scene, world, resolution, &mut canvas, false);
             *matte = canvas.matte;
         }
         let sampled = request.quality == Quality::Sampled;

@@ -29,8 +29,9 @@ pub(super) struct SavedImage<'a> {
 pub(super) fn save_picture(seen: &SavedImage, path: &Path) -> Result<(), Failure> {
     let format = Format::of_suffix(path)?;
     check_alpha(seen.look.is_transparent(), format)?;
-    let Settings { width, height, exposure, tone, .. } = *seen.settings;
-    let mut options = WriteOptions { exposure, tone, ..WriteOptions::default() };
+    let Settings { width, height, exposure, tone, dpi, .. } = *seen.settings;
+    let resolution = dpi.filter(|_| format.has_resolution());
+    let mut options = WriteOptions { exposure, tone, resolution, ..WriteOptions::default() };
     let region = Region { x: 0, y: 0, width, height };
     let subject = Subject { title: seen.title, settings: seen.settings, region, looks: &[] };
     options.metadata = subject.describe(format, &options);
@@ -44,9 +45,13 @@ pub(super) fn save_picture(seen: &SavedImage, path: &Path) -> Result<(), Failure
 }
 
 /// Writes the color bar, if it has its own file and colors represent numbers.
-pub(super) fn save_bar(setup: &RenderSetup, facts: &Facts, height: u32) -> Result<(), Failure> {
+pub(super) fn save_bar(
+    setup: &RenderSetup,
+    facts: &Facts,
+    settings: &Settings,
+) -> Result<(), Failure> {
     match &facts.legend {
-        Some(legend) => write_bar(setup, Some(legend), height),
+        Some(legend) => write_bar(setup, Some(legend), settings),
         None => Ok(()),
     }
 }

@@ -87,16 +87,17 @@ struct Clock {
 pub(super) fn run(setup: RenderSetup<'static>, json: bool) -> Result<(), Failure> {
     let events = event_loop()?;
     let proxy = events.create_proxy();
-    let (output, sized) = (setup.output.clone(), setup.picture.settings.size());
+    let output = setup.output.clone();
+    let sized = setup.picture.settings.value("size").is_some();
+    let sizes = setup.request.settings.iter().filter(|(name, _)| ["size", "dpi"].contains(name));
+    let sizes: Vec<_> = sizes.copied().collect();
     let samples = setup.picture.settings.spp().unwrap_or(session::SAMPLES);
     let sender = proxy.clone();
     let name = setup.source.name().into_owned();
     let setup = Arc::new(setup);
     let workers = Workers::start(&setup, move |message| sender.send_event(message).is_ok())?;
     let mut settings = Settings { width: 1280, height: 720, ..Settings::default() };
-    if let Some(size) = sized {
-        [settings.width, settings.height] = size;
-    }
+    settings.change(&sizes);
     let camera = spherule_render::scene::Camera::default();
     let mut app = App {
         viewer: Viewer::new(&camera, &settings, FrameRate::measured()),
@@ -115,7 +116,7 @@ pub(super) fn run(setup: RenderSetup<'static>, json: bool) -> Result<(), Failure
         notify: Arc::new(move |message| drop(proxy.send_event(message))),
         output,
         samples,
-        sized: sized.is_some(),
+        sized,
         saving: false,
         times: Times::default(),
         clock: Clock::default(),

@@ -3,6 +3,7 @@
 use super::{Drawing, pdf, svg};
 use crate::image::tone::DisplayTransform;
 use crate::image::{self, Image, ImageError, Metadata, WriteOptions, suffix};
+use std::num::NonZeroU16;
 use std::path::Path;
 
 /// A file format of drawings.
@@ -12,7 +13,7 @@ pub enum Format {
     Png,
     /// Vectors, with text as text.
     Svg,
-    /// Vectors, with text in an embedded font; 300 pixels per inch.
+    /// Vectors, with text in an embedded font.
     Pdf,
 }
 
@@ -39,6 +40,8 @@ pub struct Page<'a> {
     pub drawing: &'a Drawing,
     /// Transform from linear colors to those of the file.
     pub display: DisplayTransform,
+    /// Pixels per inch on paper; `None` for 300 in PDF, and for pixels of the display in SVG.
+    pub resolution: Option<NonZeroU16>,
     /// Keys and values; `Title` is the title.
     pub metadata: &'a Metadata,
 }
@@ -56,19 +59,30 @@ impl Format {
 }
 
 impl Drawing {
-    /// Returns the content of a file with the drawing on white.
+    /// Returns the content of a file with the drawing on white, of so many pixels, and pixels per inch.
     ///
     /// # Errors
     /// [`PageError`], an error of the program or a lack of memory.
-    pub fn file(&self, format: Format, (width, height): (u32, u32)) -> Result<Vec<u8>, PageError> {
-        let display = DisplayTransform::nearest(0.0, WriteOptions::default().tone);
-        let metadata = &Metadata::new();
-        let page = Page { size: (width, height), picture: None, drawing: self, display, metadata };
+    pub fn file(
+        &self,
+        format: Format,
+        (width, height): (u32, u32),
+        resolution: Option<NonZeroU16>,
+    ) -> Result<Vec<u8>, PageError> {
+        let options = WriteOptions { resolution, ..WriteOptions::default() };
+        let page = Page {
+            size: (width, height),
+            picture: None,
+            drawing: self,
+            display: DisplayTransform::nearest(0.0, options.tone),
+            resolution,
+            metadata: &Metadata::new(),
+        };
         match format {
             Format::Png => {
                 let mut image = Image::filled(width, height, [1.0; 3])?;
                 self.draw_over(&mut image);
-                Ok(image.encode(image::Format::Png, &[], &WriteOptions::default())?)
+                Ok(image.encode(image::Format::Png, &[], &options)?)
             }
             Format::Svg | Format::Pdf => page.file(format),
         }

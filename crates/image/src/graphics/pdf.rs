@@ -8,10 +8,14 @@ use pdf_writer::types::{CidFontType, FontFlags, SystemInfo, UnicodeCmap};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
+use std::num::NonZeroU16;
 use subsetter::GlyphRemapper;
 
-/// Points per pixel, for 300 pixels per inch.
-const SCALE: f64 = 72.0 / 300.0;
+/// Points per inch.
+const POINTS: f64 = 72.0;
+
+/// Pixels per inch of a page that has no resolution.
+const RESOLUTION: u16 = 300;
 
 /// Units of the em square in PDF.
 const EM: f64 = 1000.0;
@@ -51,8 +55,10 @@ pub(super) fn file(page: &Page) -> Result<Vec<u8>, PageError> {
     let type0 = font.write(&mut pdf, &mut ids)?;
     let picture = page.picture.map(|png| write_picture(&mut pdf, &mut ids, png)).transpose()?;
     let states = opacities(page);
+    let resolution = page.resolution.map_or(RESOLUTION, NonZeroU16::get);
+    let scale = POINTS / f64::from(resolution);
     let [width, height] =
-        [page.size.0, page.size.1].map(|pixels| (f64::from(pixels) * SCALE) as f32);
+        [page.size.0, page.size.1].map(|pixels| (f64::from(pixels) * scale) as f32);
     let mut entry = pdf.page(leaf);
     entry.media_box(Rect::new(0.0, 0.0, width, height)).parent(pages).contents(content);
     let mut resources = entry.resources();
@@ -70,7 +76,7 @@ pub(super) fn file(page: &Page) -> Result<Vec<u8>, PageError> {
     graphics_states.finish();
     resources.finish();
     entry.finish();
-    let stream = deflated(&drawn(page, &font, &states, (width, height)))?;
+    let stream = deflated(&drawn(page, &font, &states, scale as f32, (width, height)))?;
     pdf.stream(content, &stream).filter(Filter::FlateDecode);
     let mut info = pdf.document_info(ids.next());
     for (key, value) in page.metadata.iter() {
@@ -95,11 +101,12 @@ fn opacities(page: &Page) -> BTreeMap<u32, (String, f32)> {
     all.into_iter().enumerate().map(name).collect()
 }
 
-/// Returns the operators that draw the page.
+/// Returns the operators that draw the page: `scale` is the points per pixel, and its size is in points.
 fn drawn(
     page: &Page,
     font: &EmbeddedFont,
     states: &BTreeMap<u32, (String, f32)>,
+    scale: f32,
     (width, height): (f32, f32),
 ) -> Vec<u8> {
     let mut content = Content::new();
@@ -110,7 +117,6 @@ fn drawn(
         content.restore_state();
     }
     // Pixels from the top left corner.
-    let scale = SCALE as f32;
     content.transform([scale, 0.0, 0.0, -scale, 0.0, height]);
     let mut opacity = 1.0_f32.to_bits();
     for shape in &page.drawing.shapes {

@@ -3,16 +3,22 @@
 use super::font::FAMILY;
 use super::{Align, Page, Polygon, Shape, Text};
 use std::fmt::Write;
+use std::num::NonZeroU16;
 
 /// The digits of Base64, RFC 4648.
 const BASE64: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+/// Millimeters per inch.
+const MILLIMETERS: f64 = 25.4;
 
 /// Returns the content of an SVG file.
 pub(super) fn file(page: &Page) -> String {
     let (width, height) = page.size;
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
-         width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\">\n"
+         width=\"{}\" height=\"{}\" viewBox=\"0 0 {width} {height}\">\n",
+        length(width, page.resolution),
+        length(height, page.resolution),
     );
     if let Some(title) = page.metadata.value("Title") {
         let _ = writeln!(text, "<title>{}</title>", escaped(title));
@@ -70,6 +76,14 @@ fn add_text(text: &mut String, page: &Page, line: &Text) {
         "<text x=\"{x}\" y=\"{y}\" font-family=\"{FAMILY}\" font-size=\"{size}\" \
          text-anchor=\"{anchor}\" fill=\"{fill}\" xml:space=\"preserve\">{content}</text>"
     );
+}
+
+/// Formats a number of pixels as a length: in millimeters, to a thousandth, if there is a resolution.
+fn length(pixels: u32, resolution: Option<NonZeroU16>) -> String {
+    let Some(resolution) = resolution else { return pixels.to_string() };
+    let length = MILLIMETERS * f64::from(pixels) / f64::from(resolution.get());
+    let text = format!("{length:.3}");
+    format!("{}mm", text.trim_end_matches('0').trim_end_matches('.'))
 }
 
 /// Formats a coordinate with a precision of a hundredth of a pixel.

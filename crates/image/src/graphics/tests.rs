@@ -2,6 +2,7 @@ use super::*;
 use crate::image::tone::DisplayTransform;
 use crate::image::tone::Tone;
 use crate::image::{Format as ImageFormat, Image, Metadata, WriteOptions};
+use std::num::NonZeroU16;
 
 const INK: Rgb = Rgb::ZERO;
 
@@ -118,6 +119,10 @@ fn heights_of_letters_are_those_of_the_font() {
 }
 
 fn page(format: Format, opaque: bool) -> Vec<u8> {
+    page_at(format, opaque, None)
+}
+
+fn page_at(format: Format, opaque: bool, resolution: Option<NonZeroU16>) -> Vec<u8> {
     let mut drawing = Drawing::default();
     drawing.translucent_rectangle(DVec2::ZERO, DVec2::splat(9.0), Rgb::Y, 0.5);
     drawing.text(text("50\u{a0}\u{c5} <&>", Align::End));
@@ -134,7 +139,7 @@ fn page(format: Format, opaque: bool) -> Vec<u8> {
     let display = DisplayTransform::nearest(0.0, Tone::Linear);
     let drawing = &drawing;
     let metadata = &metadata;
-    Page { size: (60, 40), picture: Some(&picture), drawing, display, metadata }
+    Page { size: (60, 40), picture: Some(&picture), drawing, display, resolution, metadata }
         .file(format)
         .unwrap()
 }
@@ -168,6 +173,16 @@ fn pdf_files_have_a_font_and_the_alpha_of_their_picture() {
         // The whole font has more than 700 kB.
         assert!(pdf.len() < 20_000, "{}", pdf.len());
     }
+}
+
+#[test]
+fn pages_have_the_size_on_paper() {
+    let resolution = NonZeroU16::new(100);
+    let pdf = page_at(Format::Pdf, true, resolution);
+    let media_box = b"/MediaBox [0 0 43.2 28.8]";
+    assert!(pdf.windows(media_box.len()).any(|part| part == media_box));
+    let svg = String::from_utf8(page_at(Format::Svg, true, resolution)).unwrap();
+    assert!(svg.contains("width=\"15.24mm\" height=\"10.16mm\" viewBox=\"0 0 60 40\""), "{svg}");
 }
 
 #[test]

@@ -5,7 +5,7 @@
 //! equal files.
 
 use super::{
-    Channel, Image, Metadata, Values,
+    Channel, Image, Metadata, Values, WriteOptions,
     format::{claimed_area, damaged},
 };
 use ::exr::{
@@ -125,8 +125,9 @@ pub(super) fn metadata(bytes: &[u8]) -> Result<Metadata, String> {
 pub(super) fn encode(
     image: &Image,
     channels: &[Channel],
-    metadata: &Metadata,
+    options: &WriteOptions,
 ) -> Result<Vec<u8>, String> {
+    let WriteOptions { metadata, resolution, .. } = options;
     let color = |(i, name)| {
         let values = image.pixels.iter().map(|pixel| pixel[i]).collect();
         AnyChannel::new(name, FlatSamples::F32(values))
@@ -136,6 +137,7 @@ pub(super) fn encode(
     let comments = metadata.to_lines("");
     let attributes = LayerAttributes {
         comments: (!metadata.is_empty()).then(|| Text::from_slice_unchecked(comments.as_bytes())),
+        horizontal_density: resolution.map(|resolution| f32::from(resolution.get())),
         ..LayerAttributes::default()
     };
     let size = Vec2(image.width as usize, image.height as usize);
@@ -177,8 +179,9 @@ mod tests {
         image.pixels[7] = [f32::NAN, f32::NEG_INFINITY, -0.0];
         image.pixels[8] = [f32::MIN_POSITIVE / 2.0, f32::MAX, 1e-30];
         let metadata: Metadata = (0..20).map(|i| (format!("key {i}"), "value".into())).collect();
-        let bytes = encode(&image, &[], &metadata).unwrap();
-        assert_eq!(encode(&image, &[], &metadata).unwrap(), bytes);
+        let options = WriteOptions { metadata, ..WriteOptions::default() };
+        let bytes = encode(&image, &[], &options).unwrap();
+        assert_eq!(encode(&image, &[], &options).unwrap(), bytes);
         let back = decode(&bytes).unwrap();
         let bits =
             |image: &Image| image.pixels.iter().flatten().map(|v| v.to_bits()).collect::<Vec<_>>();
@@ -212,7 +215,7 @@ mod tests {
 
     #[test]
     fn absurd_sizes_are_refused_before_allocation() {
-        let mut bytes = encode(&ramp(2, 2), &[], &Metadata::new()).unwrap();
+        let mut bytes = encode(&ramp(2, 2), &[], &WriteOptions::default()).unwrap();
         let name = b"dataWindow\0box2i\0\x10\0\0\0";
         let start =
             bytes.windows(name.len()).position(|window| window == name).unwrap() + name.len();

@@ -117,6 +117,11 @@ impl Format {
         matches!(self, Self::Exr | Self::Png | Self::Tiff | Self::Webp)
     }
 
+    /// Returns whether files may have the number of pixels per inch.
+    pub fn has_resolution(self) -> bool {
+        matches!(self, Self::Exr | Self::Jpeg | Self::Png | Self::Tiff)
+    }
+
     /// Returns the maximum width and height of a file.
     pub fn largest_side(self) -> u32 {
         match self {
@@ -198,7 +203,7 @@ impl Format {
         options: &WriteOptions,
     ) -> Result<Vec<u8>, String> {
         match self {
-            Self::Exr => exr::encode(image, channels, &options.metadata),
+            Self::Exr => exr::encode(image, channels, options),
             Self::Jpeg => raster::encode_jpeg(image, options),
             Self::Pfm => Ok(pfm::encode(image)),
             Self::Png => png::encode(image, alpha(channels), options),

@@ -195,7 +195,10 @@ pub fn check_writable(path: impl AsRef<Path>) -> Result<(), ImageError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ::tiff::decoder::ifd::Value;
+    use ::tiff::tags::Tag;
     use std::fs;
+    use std::num::NonZeroU16;
 
     /// A picture of distinct values in 0..1.
     pub(super) fn ramp(width: u32, height: u32) -> Image {
@@ -251,6 +254,37 @@ mod tests {
                 assert!(error <= tolerance, "{name} {width} x {height}: {error}");
             }
         }
+    }
+
+    #[test]
+    fn resolutions_are_in_the_bytes_of_files() {
+        for dpi in [1, 96, 300, 65_535_u16] {
+            let resolution = NonZeroU16::new(dpi);
+            let options = WriteOptions { resolution, ..WriteOptions::default() };
+            let encoded = |format| ramp(3, 2).encode(format, &[], &options).unwrap();
+            let after = |bytes: &[u8], word: &[u8]| {
+                let at =
+                    bytes.windows(word.len()).position(|own| own == word).expect("it is there");
+                bytes[at + word.len()..].to_vec()
+            };
+            let png = after(&encoded(Format::Png), b"pHYs");
+            let pixels = (f64::from(dpi) / 0.0254).round() as u32;
+            assert_eq!(png[..9], [&pixels.to_be_bytes()[..], &pixels.to_be_bytes(), &[1]].concat());
+            let jpeg = after(&encoded(Format::Jpeg), b"JFIF\0");
+            // After the version, 1 stands for pixels per inch.
+            assert_eq!(jpeg[2..7], [&[1][..], &dpi.to_be_bytes(), &dpi.to_be_bytes()].concat());
+            let exr = after(&encoded(Format::Exr), b"xDensity\0float\0\x04\0\0\0");
+            assert_eq!(exr[..4], f32::from(dpi).to_le_bytes());
+            let tiff = std::io::Cursor::new(encoded(Format::Tiff));
+            let mut tiff = ::tiff::decoder::Decoder::new(tiff).unwrap();
+            assert_eq!(tiff.get_tag_u32(Tag::ResolutionUnit).unwrap(), 2);
+            for tag in [Tag::XResolution, Tag::YResolution] {
+                let number = tiff.get_tag(tag).unwrap();
+                assert_eq!(number, Value::Rational(dpi.into(), 1));
+            }
+        }
+        let plain = ramp(3, 2).encode(Format::Png, &[], &WriteOptions::default()).unwrap();
+        assert!(!plain.windows(4).any(|word| word == b"pHYs"));
     }
 
     #[test]

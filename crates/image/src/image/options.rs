@@ -3,10 +3,11 @@
 use super::tone::DisplayTransform;
 use super::tone::Tone;
 use super::{ImageError, Metadata};
+use std::num::NonZeroU16;
 
 /// Options of [`Image::write`](super::Image::write).
 ///
-/// The default is a preview: 8 bits, binary, no exposure, no tone curve, no metadata.
+/// The default is a preview: 8 bits, binary, no exposure, no tone curve, no resolution, no metadata.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WriteOptions {
     /// Bits per channel of PNG, PPM and TIFF; JPEG and WebP have 8, EXR and PFM have 32-bit floats.
@@ -20,6 +21,9 @@ pub struct WriteOptions {
     pub exposure: f64,
     /// Tone curve from exposed radiance to display-linear values, for formats of codes.
     pub tone: Tone,
+    /// Pixels per inch on paper, for formats that [have it](super::Format::has_resolution); `None` if it is
+    /// not known.
+    pub resolution: Option<NonZeroU16>,
     /// Metadata of the file: PNG text chunks, PPM comments, the EXR attribute `comments`, XMP in
     /// JPEG, TIFF and WebP.
     pub metadata: Metadata,
@@ -56,6 +60,7 @@ impl Default for WriteOptions {
             ppm: PpmEncoding::default(),
             exposure: 0.0,
             tone: Tone::Linear,
+            resolution: None,
             metadata: Metadata::default(),
         }
     }

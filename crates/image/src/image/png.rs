@@ -6,11 +6,12 @@ use super::{
 };
 pub use ::png::Compression;
 use ::png::{
-    BitDepth, ColorType, Decoder, Encoder, EncodingError, Info, Reader, SrgbRenderingIntent,
-    Transformations, chunk,
+    BitDepth, ColorType, Decoder, Encoder, EncodingError, Info, PixelDimensions, Reader,
+    SrgbRenderingIntent, Transformations, Unit, chunk,
 };
 use rayon::prelude::*;
 use std::io::{self, Cursor};
+use std::num::NonZeroU16;
 
 /// Maximum compression ratio of Deflate (its longest match is 258 bytes in 2 bits).
 const MAXIMUM_DEFLATE_RATIO: usize = 1032;
@@ -92,6 +93,7 @@ pub(super) fn encode(
     options: &WriteOptions,
 ) -> Result<Vec<u8>, String> {
     let mut info = Info::with_size(image.width, image.height);
+    info.pixel_dims = options.resolution.map(pixels_per_meter);
     let samples = options.depth.pack(&codes::encode(image, alpha, options));
     info.color_type = if alpha.is_some() { ColorType::Rgba } else { ColorType::Rgb };
     info.bit_depth = match options.depth {
@@ -107,6 +109,15 @@ pub(super) fn encode(
     let mut bytes = Vec::new();
     write(&mut bytes, info, &options.metadata, &stream).map_err(|error| error.to_string())?;
     Ok(bytes)
+}
+
+/// Inches per meter.
+const INCHES: f64 = 1.0 / 0.0254;
+
+/// Returns a number of pixels per inch as PNG has it.
+fn pixels_per_meter(resolution: NonZeroU16) -> PixelDimensions {
+    let pixels = (f64::from(resolution.get()) * INCHES).round() as u32;
+    PixelDimensions { xppu: pixels, yppu: pixels, unit: Unit::Meter }
 }
 
 /// Returns the content of a PNG file of sRGB codes, three bytes per pixel, row by row.

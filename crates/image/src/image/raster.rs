@@ -10,13 +10,15 @@ use super::{
     xmp,
 };
 use ::tiff::encoder::compression::DeflateLevel;
-use ::tiff::encoder::{Compression, Predictor, TiffEncoder, TiffKind, TiffValue, colortype};
-use ::tiff::tags::{ExtraSamples, Tag};
+use ::tiff::encoder::{
+    Compression, Predictor, Rational, TiffEncoder, TiffKind, TiffValue, colortype,
+};
+use ::tiff::tags::{ExtraSamples, ResolutionUnit, Tag};
 use ::tiff::{TiffError, TiffResult};
 use image::codecs::tiff::TiffDecoder;
 use image::{ColorType, ImageDecoder, Limits};
 use image_webp::{WebPDecoder, WebPEncoder};
-use jpeg_encoder::{ColorType::Rgb, Encoder as JpegEncoder, SamplingFactor};
+use jpeg_encoder::{ColorType::Rgb, Encoder as JpegEncoder, PixelDensity, SamplingFactor};
 use std::io::{Cursor, Write};
 use zune_jpeg::JpegDecoder;
 use zune_jpeg::zune_core::bytestream::ZCursor;
@@ -137,6 +139,9 @@ pub(super) fn encode_jpeg(image: &Image, options: &WriteOptions) -> Result<Vec<u
     let mut bytes = Vec::new();
     let mut encoder = JpegEncoder::new(&mut bytes, options.quality);
     encoder.set_sampling_factor(SamplingFactor::F_1_1);
+    if let Some(resolution) = options.resolution {
+        encoder.set_density(PixelDensity::dpi(resolution.get()));
+    }
     if let Some(segment) = xmp_segment(&options.metadata) {
         encoder.add_app_segment(1, segment).map_err(|error| error.to_string())?;
     }
@@ -211,6 +216,9 @@ where
     let mut directory = file.new_image::<C>(image.width, image.height)?;
     if alpha {
         directory.extra_samples(&[ExtraSamples::UnassociatedAlpha])?;
+    }
+    if let Some(resolution) = options.resolution {
+        directory.resolution(ResolutionUnit::Inch, Rational { n: resolution.get().into(), d: 1 });
     }
     let packet = xmp::packet(&options.metadata);
     if !packet.is_empty() {

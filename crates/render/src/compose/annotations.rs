@@ -5,8 +5,10 @@ use super::{Fault, Request, Subject};
 use crate::color;
 use crate::scene::particles::{Applied, Category, Cell, Coloring, Legend, Particles};
 use crate::scene::{
-    Anchor, Annotations, AxisTripod, ColorBar, ColorLegend, Label, Lettering, Rgb, ScaleBar, Scene,
+    Anchor, Annotations, AxisTripod, ColorBar, ColorLegend, Label, LetterSize, Lettering, Rgb,
+    ScaleBar, Scene,
 };
+use crate::settings::Length;
 use crate::suggest;
 use std::cmp::Ordering;
 use std::str::FromStr;
@@ -27,8 +29,8 @@ pub struct AnnotationRequest {
     pub scale_bar: Option<Bar>,
     /// Lines of text.
     pub labels: Vec<LabelText>,
-    /// Size of letters, as a fraction of the image's smaller side.
-    pub text_size: Option<f64>,
+    /// Size of letters.
+    pub text_size: Option<LetterSize>,
     /// Color of letters.
     pub text_color: Option<Rgb>,
 }
@@ -77,17 +79,6 @@ pub fn ink(text: &str) -> Result<Rgb, String> {
     color::parse(text).ok_or_else(|| {
         let near = suggest::question(text, color::names());
         format!("give a CSS color such as black, or six digits as in \"#202020\"{near}")
-    })
-}
-
-/// Returns the size of letters, as a fraction of the image's smaller side.
-///
-/// # Errors
-/// It is out of range.
-pub fn text_size(text: &str) -> Result<f64, String> {
-    let size = text.parse().ok().filter(|size| Lettering::SIZES.contains(size));
-    size.ok_or_else(|| {
-        "give a fraction of the image's smaller side from 0.005 to 0.2, as in 0.03".to_owned()
     })
 }
 
@@ -277,10 +268,17 @@ pub(super) fn add(
         annotations.labels.push(Label { text, position: label.position });
     }
     let Lettering { size, color } = &mut annotations.lettering;
-    *size = asked.text_size.unwrap_or(*size);
+    *size = asked.text_size.or(*size);
     *color = asked.text_color.or(*color);
     scene.annotations = annotations;
     Ok(())
+}
+
+/// Gives the image a resolution if its letters are a length on paper.
+pub(super) fn set_resolution(scene: &mut Scene) {
+    if let Some(LetterSize::Length(_)) = scene.annotations.lettering.size {
+        scene.settings.dpi.get_or_insert(Length::RESOLUTION);
+    }
 }
 
 /// Returns the legend of the most frequent categories, sorted by name.
@@ -343,9 +341,6 @@ mod tests {
         assert_eq!(label("bottom:a"), Ok(Anchor::Bottom));
         assert_eq!(label("time: {time}"), Ok(Anchor::TopLeft));
         assert!(label("{time").is_err());
-        for text in ["0", "0.3", "nan", "big"] {
-            assert!(text_size(text).is_err(), "{text}");
-        }
     }
 
     #[test]

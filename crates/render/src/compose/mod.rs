@@ -16,9 +16,7 @@ mod camera;
 mod sections;
 mod template;
 
-pub use self::annotations::{
-    AnnotationRequest, Axes, Bar, LabelText, ink, notes, position, text_size,
-};
+pub use self::annotations::{AnnotationRequest, Axes, Bar, LabelText, ink, notes, position};
 pub use self::camera::{
     CameraRequest, Focus, LensRequest, LookAt, choose, corners, frame, leave_room, light,
     light_ahead, place, vertical, zoom,
@@ -277,6 +275,7 @@ pub fn stage(
     if let Some(sections) = &request.sections {
         sections.set_settings(&mut scene.settings);
     }
+    annotations::set_resolution(scene);
     Ok(staged)
 }
 

@@ -2,7 +2,7 @@
 
 use super::Staged;
 use crate::scene::{Camera, Look, Pose, Scene, Settings};
-use crate::settings::SETTINGS;
+use crate::settings::{Paper, SETTINGS, Setting, Value};
 use std::collections::HashMap;
 
 /// Sections of a scene file.
@@ -150,6 +150,12 @@ impl Sections {
 /// Overrides settings with those of these names.
 pub fn change(settings: &mut Settings, given: &Settings, keys: &[String]) {
     let named = SETTINGS.iter().filter(|setting| keys.iter().any(|key| key == setting.name));
-    let values: Vec<_> = named.map(|setting| (setting.name, setting.get(given))).collect();
+    let value = |setting: &Setting| match given.paper() {
+        Some(Paper { width, height, keeps_aspect }) if setting.name == "size" => {
+            Value::Paper { width, height: (!keeps_aspect).then_some(height) }
+        }
+        _ => setting.get(given),
+    };
+    let values: Vec<_> = named.map(|setting| (setting.name, value(setting))).collect();
     settings.change(&values);
 }

@@ -6,6 +6,7 @@ use crate::graphics::{
     Align, CAP_HEIGHT, Drawing, Format, PageError, Text, marked_width, text_width,
 };
 use glam::DVec2;
+use std::num::NonZeroU16;
 
 /// Lengths of color bars in files, in pixels.
 pub const LENGTHS: std::ops::RangeInclusive<u32> = 64..=8192;
@@ -62,7 +63,8 @@ impl Bar {
     }
 
     /// Returns the content of a file with a bar on white. Its colors are `length` pixels long, clamped to
-    /// 64 to 8192, and everything else is in proportion.
+    /// 64 to 8192, and everything else is in proportion to letters of `letter` pixels: by default a twentieth of the
+    /// length. The file may have a `resolution` in pixels per inch.
     ///
     /// # Errors
     /// [`PageError`], an error of the program or a lack of memory.
@@ -70,16 +72,18 @@ impl Bar {
         scale: &Scale,
         label: &str,
         length: u32,
+        letter: Option<f64>,
         format: Format,
+        resolution: Option<NonZeroU16>,
     ) -> Result<Vec<u8>, PageError> {
         let length = f64::from(length.clamp(*LENGTHS.start(), *LENGTHS.end()));
-        let letter = (length / LENGTH_PER_EM).max(10.0);
+        let letter = letter.unwrap_or_else(|| (length / LENGTH_PER_EM).max(10.0));
         let Block { drawing, size } =
             Self::new(scale, label, length, letter, Direction::Up).block(INK);
         let mut page = Drawing::default();
         page.append(drawing, DVec2::splat(letter));
         let size = (size + 2.0 * letter).ceil();
-        page.file(format, (size.x as u32, size.y as u32))
+        page.file(format, (size.x as u32, size.y as u32), resolution)
     }
 
     /// Returns the drawing of the bar, with letters of the linear color `ink`.

@@ -2,7 +2,11 @@
 
 use super::Rgb;
 use crate::color::Scale;
+use crate::settings::{self, Length};
 use glam::DVec3;
+use std::num::NonZeroU16;
+use std::ops::RangeInclusive;
+use std::str::FromStr;
 
 /// Annotations of the picture, drawn after rendering; the default is none.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -78,11 +82,21 @@ pub struct Label {
     pub position: Anchor,
 }
 
-/// Size and color of letters, and of the lines that belong to them.
+/// Size of letters.
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LetterSize {
+    /// A fraction of the picture's smaller side, [`LetterSize::SHARES`].
+    Share(f64),
+    /// A length on paper, [`LetterSize::LENGTHS`].
+    Length(Length),
+}
+
+/// Size and color of letters, and of the lines that belong to them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lettering {
-    /// Size of the em square as a fraction of the picture's smaller side.
-    pub size: f64,
+    /// Size of the em square; `None` is 7 points in a picture with a resolution, and else 0.03 of its smaller
+    /// side.
+    pub size: Option<LetterSize>,
     /// Linear color; `None` contrasts with the background.
     pub color: Option<Rgb>,
 }
@@ -121,14 +135,54 @@ impl Annotations {
     }
 }
 
-impl Lettering {
-    /// Limits of the size.
-    pub const SIZES: std::ops::RangeInclusive<f64> = 0.005..=0.2;
+impl LetterSize {
+    /// Limits of fractions of the picture's smaller side.
+    pub const SHARES: RangeInclusive<f64> = 0.005..=0.2;
+
+    /// Limits of lengths.
+    pub const LENGTHS: RangeInclusive<Length> = Length::points(1)..=Length::points(1000);
+
+    /// The sizes that there are, in words.
+    pub(in crate::scene) const WORDS: &'static str = "0.005 to 0.2 of the image's smaller side, or a length of 1pt to 1000pt, as in \"7pt\" or \"2.5mm\"";
+
+    /// Returns whether it is within its limits.
+    pub fn is_valid(self) -> bool {
+        match self {
+            Self::Share(share) => Self::SHARES.contains(&share),
+            Self::Length(length) => Self::LENGTHS.contains(&length),
+        }
+    }
 }
 
-impl Default for Lettering {
-    fn default() -> Self {
-        Self { size: 0.03, color: None }
+impl FromStr for LetterSize {
+    type Err = String;
+
+    /// Parses `0.03`, `3%`, `7pt` or `2.5mm`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let share = settings::share(text).map(Self::Share);
+        let size = share.or_else(|| text.parse().ok().map(Self::Length));
+        size.filter(|size| size.is_valid()).ok_or_else(|| format!("give {}", Self::WORDS))
+    }
+}
+
+impl Lettering {
+    /// Size in a picture with a resolution.
+    const USUAL: Length = Length::points(7);
+
+    /// Size in a picture without a resolution.
+    const USUAL_SHARE: f64 = 0.03;
+
+    /// Returns the size of the em square in pixels, in a picture of so many pixels and pixels per inch.
+    pub fn pixels(&self, (width, height): (u32, u32), resolution: Option<NonZeroU16>) -> f64 {
+        let share = |share: f64| share * f64::from(width.min(height));
+        match (self.size, resolution) {
+            (Some(LetterSize::Share(own)), _) => share(own),
+            (Some(LetterSize::Length(length)), _) => {
+                length.exact_pixels(resolution.unwrap_or(Length::RESOLUTION))
+            }
+            (None, Some(resolution)) => Self::USUAL.exact_pixels(resolution),
+            (None, None) => share(Self::USUAL_SHARE),
+        }
     }
 }
 
@@ -202,8 +256,26 @@ mod tests {
     }
 
     #[test]
+    fn letters_are_a_share_of_the_picture_or_a_length_on_paper() {
+        let pixels = |text: Option<&str>, dpi| {
+            let size = text.map(|text| text.parse().expect("a size"));
+            let lettering = Lettering { size, ..Lettering::default() };
+            lettering.pixels((800, 600), NonZeroU16::new(dpi))
+        };
+        assert_eq!(pixels(Some("5%"), 0), 30.0);
+        assert_eq!(pixels(Some("0.05"), 600), 30.0);
+        assert_eq!(pixels(Some("36pt"), 144), 72.0);
+        assert_eq!(pixels(Some("25.4 mm"), 0), 300.0);
+        assert_eq!(pixels(None, 0), 18.0);
+        assert_eq!(pixels(None, 720), 70.0);
+        for text in ["", "0", "0.3", "30%", "nan", "big", "0.9pt", "1001pt", "7px"] {
+            assert!(text.parse::<LetterSize>().is_err(), "{text}");
+        }
+    }
+
+    #[test]
     fn lettering_is_no_annotation() {
-        let lettering = Lettering { size: 0.1, color: Some(Rgb::ONE) };
+        let lettering = Lettering { size: Some(LetterSize::Share(0.1)), color: Some(Rgb::ONE) };
         assert!(Annotations { lettering, ..Annotations::default() }.is_empty());
         let labels = vec![Label::default()];
         assert!(!Annotations { labels, ..Annotations::default() }.is_empty());

@@ -25,10 +25,11 @@ pub(crate) mod write;
 
 pub use crate::color::{Rgb, linear_from_srgb, srgb};
 pub use crate::settings::{
-    Denoise, Filter, Integrator, InvalidSetting, LightChoice, Roulette, SamplerKind, Settings, Tone,
+    Denoise, Filter, Integrator, InvalidSetting, Length, LightChoice, Paper, Roulette, SamplerKind,
+    Settings, Tone,
 };
 pub use annotations::{
-    Anchor, Annotations, AxisTripod, ColorBar, ColorLegend, Label, Lettering, ScaleBar,
+    Anchor, Annotations, AxisTripod, ColorBar, ColorLegend, Label, LetterSize, Lettering, ScaleBar,
 };
 pub use axis::Axis;
 pub use bodies::{

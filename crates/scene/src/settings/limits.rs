@@ -37,6 +37,11 @@ impl Limits {
             }
     }
 
+    /// Returns whether the numbers are shares of a whole.
+    pub fn is_share(self) -> bool {
+        matches!(self, Self::Share | Self::AboveTo(0.0, 1.0))
+    }
+
     /// Returns the limits in words, to follow "must be".
     pub fn describe(self) -> String {
         match self {
@@ -54,9 +59,29 @@ impl Limits {
     }
 }
 
+/// Parses a share of a whole: a number, or a percentage, as in `0.3` and `30%`. It may be any number, also NaN.
+pub fn share(text: &str) -> Option<f64> {
+    let text = text.trim();
+    match text.strip_suffix('%') {
+        Some(percent) => percent.trim_end().parse().ok().map(|percent: f64| percent / 100.0),
+        None => text.parse().ok(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn shares_are_numbers_or_percentages() {
+        let cases = [("0.3", 0.3), ("30%", 0.3), (" 30 % ", 0.3), ("2.5%", 0.025), ("-1", -1.0)];
+        for (text, expected) in cases {
+            assert_eq!(share(text), Some(expected), "{text}");
+        }
+        for text in ["", "%", "30%%", "% 30", "x", "0.3x"] {
+            assert_eq!(share(text), None, "{text}");
+        }
+    }
 
     #[test]
     fn limits_hold_at_their_ends() {

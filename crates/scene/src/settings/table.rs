@@ -7,9 +7,11 @@
 use super::{
     Denoise, Filter, Integrator, InvalidSetting, LightChoice, Limits, Roulette, SamplerKind,
     Settings, Tone,
+    length::{Length, Paper},
 };
 use std::fmt::{self, Display};
 use std::mem::discriminant;
+use std::num::NonZeroU16;
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
@@ -34,7 +36,7 @@ pub struct Setting {
 /// The type of a setting, and the range of its values.
 #[derive(Clone, Copy)]
 pub enum Kind {
-    /// Width and height in pixels, [`Settings::PIXELS`] each.
+    /// Width and height in pixels, [`Settings::PIXELS`] each, or as lengths on paper.
     Size,
     /// An integer in a range, or one of some words.
     Whole {
@@ -112,8 +114,15 @@ pub enum Value {
     Number(f64),
     /// A word.
     Word(&'static str),
-    /// Width and height.
+    /// Width and height in pixels.
     Size([u32; 2]),
+    /// Width and height on paper.
+    Paper {
+        /// Width.
+        width: Length,
+        /// Height; `None` keeps the aspect.
+        height: Option<Length>,
+    },
 }
 
 /// Values of an enum with their names and help, in the order in which they are listed. Names without help
@@ -207,13 +216,22 @@ const fn whole(least: u64, greatest: u64, words: &'static [&'static str]) -> Kin
 pub const SETTINGS: &[Setting] = &[
     Setting {
         name: "size",
-        help: "Width and height in pixels, each 1 to 65535",
+        help: "Width and height in pixels, each 1 to 65535; or on paper, in mm, cm, in or pt: 85mmx60mm, or \
+               85mm, which keeps the aspect",
         kind: Kind::Size,
         scope: Scope::All,
         need: Need::Nothing,
         role: Role::Samples,
         get: |settings| Value::Size([settings.width, settings.height]),
-        set: |settings, value| [settings.width, settings.height] = value.size(),
+        set: |settings, value| match value {
+            Value::Paper { width, height } => {
+                settings.set_paper(Paper::new(width, height, [settings.width, settings.height]));
+            }
+            pixels => {
+                [settings.width, settings.height] = pixels.size();
+                settings.paper = None;
+            }
+        },
     },
     Setting {
         name: "spp",
@@ -408,6 +426,23 @@ pub const SETTINGS: &[Setting] = &[
         },
     },
     Setting {
+        name: "dpi",
+        help: "Pixels per inch on paper, which PNG, TIFF, JPEG, EXR, SVG and PDF files store; by default 300 if \
+               the size or letters are lengths on paper",
+        kind: whole(1, u16::MAX as u64, &[]),
+        scope: Scope::All,
+        need: Need::Nothing,
+        role: Role::Display,
+        get: |settings| settings.dpi.map_or(Value::None, |dpi| Value::Whole(dpi.get().into())),
+        set: |settings, value| {
+            let dpi = match value {
+                Value::None => None,
+                dpi => u16::try_from(dpi.whole()).ok().and_then(NonZeroU16::new),
+            };
+            settings.set_resolution(dpi);
+        },
+    },
+    Setting {
         name: "exposure",
         help: "Exposure in stops: multiplies the radiance by 2 to this power, for all formats but EXR and PFM",
         kind: Kind::Number {
@@ -470,9 +505,11 @@ impl Kind {
     /// Returns whether the value is in range.
     pub fn contains(&self, value: Value) -> bool {
         match (*self, value) {
-            (_, Value::None) | (Self::Choice(_), Value::Word(_)) | (Self::Flag, Value::Flag(_)) => {
-                true
-            }
+            // The pixels of a size on paper depend on the resolution.
+            (_, Value::None)
+            | (Self::Choice(_), Value::Word(_))
+            | (Self::Flag, Value::Flag(_))
+            | (Self::Size, Value::Paper { .. }) => true,
             (Self::Whole { words, .. } | Self::Number { words, .. }, Value::Word(word)) => {
                 words.contains(&word)
             }
@@ -497,7 +534,7 @@ impl Kind {
         match *self {
             Self::Size => {
                 format!(
-                    "[width, height], each {} to {}",
+                    "[width, height], each {} to {}, or lengths such as \"85mm\" or \"85mmx60mm\"",
                     Settings::PIXELS.start(),
                     Settings::PIXELS.end()
                 )
@@ -578,6 +615,8 @@ impl Display for Value {
             Self::Number(number) => write!(f, "{number:?}"),
             Self::Word(word) => write!(f, "{word}"),
             Self::Size([width, height]) => write!(f, "[{width}, {height}]"),
+            Self::Paper { width, height: None } => write!(f, "{width}"),
+            Self::Paper { width, height: Some(height) } => write!(f, "{width}x{height}"),
         }
     }
 }
@@ -675,6 +714,9 @@ mod tests {
         let Settings {
             width,
             height,
+            dpi,
+            // Follows from the size.
+            paper: _,
             spp,
             until_error,
             time,
@@ -697,7 +739,7 @@ mod tests {
         assert!(integrator != usual.integrator && sampler != usual.sampler);
         assert!(filter != usual.filter && roulette != usual.roulette && tone != usual.tone);
         assert!(light_choice != usual.light_choice && caustics != usual.caustics);
-        assert!(exposure != usual.exposure && denoise != usual.denoise);
+        assert!(exposure != usual.exposure && denoise != usual.denoise && dpi != usual.dpi);
     }
 
     #[test]

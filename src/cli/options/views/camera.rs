@@ -3,6 +3,7 @@
 use crate::cli::options::values;
 use spherule_render::compose;
 use spherule_render::scene::Axis;
+use spherule_render::settings::share;
 use spherule_render::suggest;
 
 /// The direction that is up, or `auto`.
@@ -34,8 +35,8 @@ pub(super) fn zoom(text: &str) -> Result<f64, String> {
 
 /// 0 to 0.9.
 pub(super) fn margin(text: &str) -> Result<f64, String> {
-    let share = text.parse().ok().filter(|share| (0.0..=0.9).contains(share));
-    share.ok_or_else(|| "give a fraction of the image from 0 to 0.9, as in 0.05".to_owned())
+    let share = share(text).filter(|share| (0.0..=0.9).contains(share));
+    share.ok_or_else(|| "give a fraction of the image from 0 to 0.9, as in 0.05 or 5%".to_owned())
 }
 
 #[cfg(test)]
@@ -60,7 +61,7 @@ mod tests {
 
     #[test]
     fn margins_are_less_than_the_whole() {
-        assert_eq!(margin("0.1"), Ok(0.1));
+        assert_eq!((margin("0.1"), margin("10%")), (Ok(0.1), Ok(0.1)));
         assert!(margin("-0.1").is_err() && margin("1").is_err() && margin("NaN").is_err());
     }
 }

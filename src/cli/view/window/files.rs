@@ -44,7 +44,7 @@ impl App {
             let seen = SavedImage { title, camera, settings, look, picture: &picture };
             let toml = path.with_extension("toml");
             let saved = save_picture(&seen, &path)
-                .and_then(|()| save_bar(&setup, &facts, settings.height))
+                .and_then(|()| save_bar(&setup, &facts, settings))
                 .and_then(|()| save_scene(&seen, &scene, origin.as_ref(), &toml));
             notify(Message::Saved(saved.map(|()| path)));
         });

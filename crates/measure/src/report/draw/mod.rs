@@ -17,7 +17,7 @@ use spherule_render::graphics::{Format, PageError};
 /// [`PageError`].
 pub fn draw(plot: &Plot, format: Format) -> Result<Vec<u8>, PageError> {
     let canvas = layout(plot);
-    canvas.drawing.file(format, (canvas::WIDTH as u32, canvas.height as u32))
+    canvas.drawing.file(format, (canvas::WIDTH as u32, canvas.height as u32), None)
 }
 
 fn layout(plot: &Plot) -> Canvas {

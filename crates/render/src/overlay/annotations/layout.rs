@@ -46,15 +46,15 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// Places annotations in a picture of this size.
+    /// Places annotations in a picture of this size, with letters of `letter` pixels or less.
     pub(super) fn new(
         annotations: &Annotations,
         (width, height): (u32, u32),
+        letter: f64,
         view: &Viewpoint,
         ink: Rgb,
     ) -> Self {
         let picture = DVec2::new(f64::from(width), f64::from(height));
-        let letter = annotations.lettering.size * picture.min_element();
         let mut layout = None;
         let bars = if annotations.color_bar.is_some() { &EDGE_BARS[..] } else { &[1.0] };
         let tries = SHRINK.iter().flat_map(|factor| bars.iter().map(move |share| (factor, share)));

@@ -7,7 +7,8 @@
 //!             -> one Drawing                        graphics
 //! ```
 //!
-//! All sizes are in proportion to the letters, whose size is relative to the picture's smaller side.
+//! All sizes are in proportion to the letters, whose size is relative to the picture's smaller side, or a length on
+//! paper.
 
 mod block;
 mod layout;
@@ -22,6 +23,7 @@ use crate::scene::{Annotations, Background, Insets, Look, Pose, Scene};
 use crate::world::{World, framing};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
+use std::num::NonZeroU16;
 
 /// Opacity of a light and of a dark panel behind annotations that cover spheres. Blending is linear, where
 /// what is bright shows through more.
@@ -57,7 +59,8 @@ pub fn insets(scene: &Scene, turns: bool) -> Insets {
     };
     let view = Viewpoint { axes, pixel: None, turns };
     let size = (scene.settings.width, scene.settings.height);
-    let layout = Layout::new(&scene.annotations, size, &view, Rgb::ZERO);
+    let letter = scene.annotations.lettering.pixels(size, scene.settings.dpi);
+    let layout = Layout::new(&scene.annotations, size, letter, &view, Rgb::ZERO);
     layout.insets().unwrap_or_default()
 }
 
@@ -71,18 +74,21 @@ pub struct AnnotationDrawing {
     pub fits: bool,
 }
 
-/// Draws the annotations of a picture of a world. Those that cover a sphere get a panel behind them.
+/// Draws the annotations of a picture of a world, which may have a `resolution` in pixels per inch. Those that cover a sphere get a panel behind them.
 pub fn draw(
     annotations: &Annotations,
     world: &World,
     look: &Look,
+    resolution: Option<NonZeroU16>,
     turns: bool,
 ) -> AnnotationDrawing {
     let camera = &world.camera;
     let pixel = Some(camera.pixel_at_target() / world.transform.scale);
     let view = Viewpoint { axes: camera.axes(), pixel, turns };
     let ink = annotations.lettering.color.unwrap_or_else(|| ink(world, look));
-    let layout = Layout::new(annotations, (camera.width, camera.height), &view, ink);
+    let size = (camera.width, camera.height);
+    let letter = annotations.lettering.pixels(size, resolution);
+    let layout = Layout::new(annotations, size, letter, &view, ink);
     let paper = paper(look, ink);
     let opacity = if paper.max_element() < DARK { DARK_PANEL } else { LIGHT_PANEL };
     let mut drawing = Drawing::default();

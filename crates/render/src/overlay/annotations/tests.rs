@@ -45,7 +45,8 @@ fn everything() -> Annotations {
 /// Returns the pixels that the drawing changes.
 fn drawn(scene: &Scene, turns: bool) -> (Image, bool) {
     let world = World::build(scene).unwrap();
-    let AnnotationDrawing { drawing, fits } = draw(&scene.annotations, &world, &scene.look, turns);
+    let AnnotationDrawing { drawing, fits } =
+        draw(&scene.annotations, &world, &scene.look, None, turns);
     let mut image = Image::filled(SIZE.0, SIZE.1, [1.0; 3]).unwrap();
     drawing.draw_over(&mut image);
     (image, fits)

@@ -119,7 +119,7 @@ fn arrows_show_colors_outside_of_the_range() {
 
 #[test]
 fn files_are_pixels_or_vectors_with_the_label_in_them() {
-    let file = |format| Bar::file(&scale(0.0, 1.0), "a<b & c", 100, format).unwrap();
+    let file = |format| Bar::file(&scale(0.0, 1.0), "a<b & c", 100, None, format, None).unwrap();
     assert!(file(Format::Png).starts_with(b"\x89PNG"));
     let svg = String::from_utf8(file(Format::Svg)).unwrap();
     assert!(svg.starts_with("<svg") && svg.contains("a&lt;b &amp; c") && svg.contains("0.5"));

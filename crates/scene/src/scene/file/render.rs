@@ -26,6 +26,9 @@ pub(super) fn read(block: &Block) -> Result<Settings, FileError> {
 fn read_value(value: &Value, kind: &Kind) -> Result<settings::Value, FileError> {
     let is_text = matches!(value.item, DeValue::String(_));
     Ok(match *kind {
+        Kind::Size if is_text => {
+            settings::paper_size(value.text()?).map_err(|_| value.must_be(kind.describe()))?
+        }
         Kind::Size => {
             let [least, greatest] = [Settings::PIXELS.start(), Settings::PIXELS.end()];
             let [width, height] = value.list()?;

@@ -2,7 +2,7 @@
 
 use super::super::file::value::Value;
 use super::super::write::sections::quoted;
-use crate::scene::{Background, FileError, Rgb};
+use crate::scene::{Background, FileError, LetterSize, Rgb};
 use crate::settings::Limits;
 use glam::{DQuat, DVec3};
 use std::fmt::Debug;
@@ -316,6 +316,34 @@ impl<T: Debug, K: Kind<T>> Kind<Option<T>> for Optional<K> {
 
     fn words(&self) -> Words {
         self.0.words()
+    }
+}
+
+/// The size of letters.
+pub(super) struct Letters;
+
+impl Kind<LetterSize> for Letters {
+    fn read(&self, value: &Value) -> Result<LetterSize, FileError> {
+        let size = match value.item {
+            DeValue::String(text) => text.parse().ok(),
+            _ => value.number(Limits::Any).ok().map(LetterSize::Share),
+        };
+        size.filter(|size| size.is_valid()).ok_or_else(|| value.must_be(LetterSize::WORDS))
+    }
+
+    fn text(&self, value: &LetterSize) -> Option<String> {
+        Some(match value {
+            LetterSize::Share(share) => format!("{share:?}"),
+            LetterSize::Length(length) => quoted(&length.to_string()),
+        })
+    }
+
+    fn contains(&self, value: &LetterSize) -> bool {
+        value.is_valid()
+    }
+
+    fn words(&self) -> Words {
+        Words::new(LetterSize::WORDS, "float | str")
     }
 }
 

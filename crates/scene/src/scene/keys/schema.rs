@@ -106,7 +106,7 @@ fn python_of(kind: &settings::Kind) -> String {
         _ => format!("{usual} | {}", kinds::one_of(words.iter().copied()).python),
     };
     match *kind {
-        settings::Kind::Size => "Sequence[int]".to_owned(),
+        settings::Kind::Size => "Sequence[int] | str".to_owned(),
         settings::Kind::Whole { words, .. } => or("int", words),
         settings::Kind::Number { words, .. } => or("float", words),
         settings::Kind::Error | settings::Kind::Time => "float".to_owned(),

@@ -3,7 +3,7 @@
 
 use super::kinds::Str::{Name, Path, Text};
 use super::kinds::Triple::{Direction, Point, Vector};
-use super::kinds::{Backdrop, Entries, Flag, List, Optional, Whole, Word};
+use super::kinds::{Backdrop, Entries, Flag, Letters, List, Optional, Whole, Word};
 use super::{Schema, Section, Visitor, key};
 use crate::color::{Map, Range, Scale, Spacing};
 use crate::image::Image;
@@ -306,10 +306,9 @@ impl Section for Lettering {
 
     fn visit<V: Visitor>(&mut self, keys: &mut V) {
         let Self { size, color } = self;
-        let range = Within(*Self::SIZES.start(), *Self::SIZES.end());
-        let help = "size of the letters as a fraction of the image's smaller side; smaller where \
-                    annotations would overlap";
-        keys.visit(key("size", help), range, size);
+        let default = "`\"7pt\"` if the image has a `dpi`, or else 0.03";
+        let help = "size of the letters; smaller where annotations would overlap";
+        keys.visit(key("size", help).or(default), Optional(Letters), size);
         let default = "dark or light, in contrast with the background";
         keys.visit(key("color", "color of letters").or(default), Optional(LIGHT), color);
     }

@@ -1,6 +1,7 @@
 //! Slice planes as text: `z>10`, `x+y<3`, `z=50%`, `1,1,0,2.5`.
 
 use super::{Slice, SliceMode};
+use crate::settings::share;
 use glam::DVec3;
 use std::str::FromStr;
 
@@ -105,13 +106,11 @@ fn parse_condition(text: &str) -> Option<(DVec3, Offset, bool)> {
 
 /// Parses a number, or a fraction if it ends in `%`.
 fn parse_offset(text: &str) -> Option<Offset> {
-    match text.strip_suffix('%') {
-        Some(percent) => {
-            let fraction = number(percent)? / 100.0;
-            (0.0..=1.0).contains(&fraction).then_some(Offset::Fraction(fraction))
-        }
-        None => number(text).map(Offset::Distance),
+    let number = share(text)?;
+    if !text.ends_with('%') {
+        return Some(Offset::Distance(number));
     }
+    (0.0..=1.0).contains(&number).then_some(Offset::Fraction(number))
 }
 
 fn number(text: &str) -> Option<f64> {

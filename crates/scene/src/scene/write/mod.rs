@@ -201,9 +201,9 @@ mod tests {
     use crate::scene::particles::Cell;
     use crate::scene::{
         Anchor, Annotations, AxisTripod, BRIGHTEST, Background, ColorBar, ColorLegend,
-        ConductorFresnel, Filter, FramedSphere, Ground, Insets, Integrator, Label, Lens, Lettering,
-        Light, LightChoice, Material, Projection, Roulette, SamplerKind, ScaleBar, Slice,
-        SliceMode,
+        ConductorFresnel, Filter, FramedSphere, Ground, Insets, Integrator, Label, Lens,
+        LetterSize, Lettering, Light, LightChoice, Material, Projection, Roulette, SamplerKind,
+        ScaleBar, Slice, SliceMode,
     };
     use glam::DVec3;
     use std::sync::Arc;
@@ -328,10 +328,28 @@ mod tests {
                     position,
                 }),
                 labels: vec![Label { text: label, position }, Label::default()],
-                lettering: Lettering { size: 1.0 / 30.0, color: right.then_some(odd * 3.0) },
+                lettering: Lettering {
+                    size: Some(if right {
+                        "7.1pt".parse().unwrap()
+                    } else {
+                        LetterSize::Share(1.0 / 30.0)
+                    }),
+                    color: right.then_some(odd * 3.0),
+                },
             };
             let again = round_trip(&Scene { annotations: annotations.clone(), ..Scene::default() });
             assert_eq!(again.annotations, annotations);
+        }
+    }
+
+    #[test]
+    fn sizes_on_paper_survive() {
+        for size in ["85mm", "85mmx60mm", "80mmx60mm"] {
+            let text = format!("[render]\nsize = \"{size}\"\ndpi = 600\n");
+            let scene = Scene::parse(&text, "", Path::new("")).unwrap();
+            let again = round_trip(&scene);
+            assert_eq!(again.settings, scene.settings);
+            assert!(render(&scene.settings).contains(&format!("size = \"{size}\"\n")), "{size}");
         }
     }
 

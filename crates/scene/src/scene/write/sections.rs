@@ -6,11 +6,16 @@ use crate::scene::{Annotations, Lettering, Look, Scene};
 use crate::settings::{SETTINGS, Setting, Settings, Value};
 
 pub(super) fn render(settings: &Settings) -> String {
+    let paper = settings.paper();
     let line = |setting: &Setting| match setting.get(settings) {
         // Without the key there is no limit.
         Value::None | Value::Word("inf") => String::new(),
         // Nor does it decide when the render stops.
         _ if setting.name == "spp" && is_undecided(settings) => String::new(),
+        pixels @ Value::Size(_) => {
+            let size = paper.map_or_else(|| pixels.to_string(), |paper| quoted(&paper.text()));
+            format!("size = {size}\n")
+        }
         Value::Word(word) => format!("{} = \"{word}\"\n", setting.name),
         value => format!("{} = {value}\n", setting.name),
     };

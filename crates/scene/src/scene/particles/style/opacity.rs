@@ -3,6 +3,7 @@
 use super::columns::numbers;
 use crate::scene::FileError;
 use crate::scene::particles::Particles;
+use crate::settings::share;
 use std::collections::HashMap;
 use std::path::Path;
 use std::str::FromStr;
@@ -31,12 +32,12 @@ pub enum Opacity {
 impl FromStr for Opacity {
     type Err = String;
 
-    /// Parses a number from 0 to 1, or the name of a column or an expression, perhaps with the values that become 0 and 1, as in
+    /// Parses a number from 0 to 1, a percentage, or the name of a column or an expression, perhaps with the values that become 0 and 1, as in
     /// `occupancy` and `charge:-1,1`.
     fn from_str(text: &str) -> Result<Self, String> {
-        if let Ok(number) = text.trim().parse::<f64>() {
+        if let Some(number) = share(text) {
             let valid = (0.0..=1.0).contains(&number).then_some(Self::Number(number));
-            return valid.ok_or_else(|| format!("`{text}` is not between 0 and 1"));
+            return valid.ok_or_else(|| format!("`{text}` is not between 0 and 1, or 0% and 100%"));
         }
         let ends = |text: &str| -> Option<[f64; 2]> {
             let (low, high) = text.split_once(',')?;
@@ -54,7 +55,9 @@ impl FromStr for Opacity {
         };
         let name = name.trim();
         if name.is_empty() {
-            return Err("give a number from 0 to 1, or the name of a column".to_owned());
+            return Err(
+                "give a number from 0 to 1, a percentage, or the name of a column".to_owned()
+            );
         }
         Ok(Self::Column { name: name.to_owned(), ends })
     }
