@@ -61,6 +61,7 @@ mod gsd;
 mod hdf5;
 mod header;
 mod ids;
+pub mod images;
 mod lammps;
 mod line;
 mod lines;
@@ -133,6 +134,7 @@ pub mod internals {
     pub mod aliases {
         pub use crate::aliases::*;
     }
+    pub use crate::bonds::PairRule;
     pub use crate::categories::retain;
     pub use crate::error::{clipped, listed};
     pub use crate::mesh::{Mesh, read_mesh};

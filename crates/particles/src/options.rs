@@ -50,6 +50,9 @@ pub enum Radii {
     VanDerWaals,
     /// Covalent radii of elements (Cordero et al. 2008).
     Covalent,
+    /// Effective ionic radii of elements at a coordination of 6 in their commonest states of oxidation (Shannon 1976);
+    /// covalent radii of elements without one.
+    Ionic,
     /// Values of a column, in the file's unit of length.
     Column(String),
     /// Values of an expression over columns, in the file's unit of length, which the conversion to spheres evaluates;
@@ -60,20 +63,21 @@ pub enum Radii {
 impl FromStr for Radii {
     type Err = String;
 
-    /// Parses `vdw`, `covalent`, `column:NAME` or a number.
+    /// Parses `vdw`, `covalent`, `ionic`, `column:NAME` or a number.
     fn from_str(text: &str) -> Result<Self, String> {
         match (text, text.strip_prefix("column:")) {
             ("vdw", _) => Ok(Self::VanDerWaals),
             ("covalent", _) => Ok(Self::Covalent),
+            ("ionic", _) => Ok(Self::Ionic),
             (_, Some(name)) if !name.is_empty() => Ok(Self::Column(name.to_owned())),
             (number, _) => {
                 let radius =
                     number.parse().ok().filter(|radius| (0.0..f64::INFINITY).contains(radius));
                 radius.filter(|&radius| radius > 0.0).map(Self::Constant).ok_or_else(|| {
-                    let near = suggest::question(number, ["vdw", "covalent"]);
+                    let near = suggest::question(number, ["vdw", "covalent", "ionic"]);
                     format!(
-                        "invalid radii `{number}`: expected vdw, covalent, column:NAME or a \
-                         positive number{near}"
+                        "invalid radii `{number}`: expected vdw, covalent, ionic, column:NAME or \
+                         a positive number{near}"
                     )
                 })
             }
@@ -192,6 +196,7 @@ impl ReadOptions {
             Radii::Auto
             | Radii::VanDerWaals
             | Radii::Covalent
+            | Radii::Ionic
             | Radii::Column(_)
             | Radii::Expression(_) => None,
         };
@@ -249,6 +254,7 @@ mod tests {
         assert_eq!("last".parse(), Ok(FrameChoice::Last));
         assert!("-1".parse::<FrameChoice>().is_err());
         assert_eq!("vdw".parse(), Ok(Radii::VanDerWaals));
+        assert_eq!("ionic".parse(), Ok(Radii::Ionic));
         assert_eq!("column:d".parse(), Ok(Radii::Column("d".to_owned())));
         assert_eq!("0.5".parse(), Ok(Radii::Constant(0.5)));
         for text in ["", "0", "-1", "nan", "inf", "column:", "vdw2"] {

@@ -5,15 +5,26 @@ use crate::ParticleFrame;
 use glam::DVec3;
 
 /// The bonds of each particle.
-struct Adjacency {
+pub(crate) struct Adjacency {
     /// Index of the first end of each particle.
     starts: Vec<u32>,
     /// Bonds, and whether the particle is the first one.
     ends: Vec<(u32, bool)>,
 }
 
+/// A bond from one of its ends.
+pub(crate) struct Near {
+    /// The particle at the other end.
+    pub(crate) row: u32,
+    /// Number of edges of the cell to its image.
+    pub(crate) shift: [i32; 3],
+    pub(crate) bond: usize,
+    /// True if this end is the first one.
+    pub(crate) is_first: bool,
+}
+
 impl Adjacency {
-    fn new(bonds: &Bonds, particles: usize) -> Self {
+    pub(crate) fn new(bonds: &Bonds, particles: usize) -> Self {
         let mut starts = vec![0_u32; particles + 2];
         for &row in bonds.first.iter().chain(&bonds.second) {
             starts[row as usize + 2] += 1;
@@ -36,6 +47,20 @@ impl Adjacency {
     fn of(&self, row: u32) -> &[(u32, bool)] {
         let row = row as usize;
         &self.ends[self.starts[row] as usize..self.starts[row + 1] as usize]
+    }
+
+    /// Returns the bonds of a particle from its end; `bonds` are those of [`Adjacency::new`].
+    pub(crate) fn near(&self, bonds: &Bonds, row: u32) -> impl Iterator<Item = Near> {
+        self.of(row).iter().map(|&(bond, is_first)| {
+            let bond = bond as usize;
+            let (first, second, shift) = bonds.bond(bond);
+            let shift = shift.map(i32::from);
+            if is_first {
+                Near { row: second, shift, bond, is_first }
+            } else {
+                Near { row: first, shift: shift.map(|edge| -edge), bond, is_first }
+            }
+        })
     }
 }
 

@@ -1,8 +1,8 @@
 //! Bonds by distance: pairs of particles closer than a length that depends on their types.
 
-use super::images;
 use super::rules::{BondRules, Cutoffs};
 use super::{Bond, Bonds};
+use super::{bridges, images};
 use crate::ParticleFrame;
 use crate::neighbors::{CellList, Points};
 use rayon::prelude::*;
@@ -71,7 +71,11 @@ pub fn from_distance(frame: &ParticleFrame, rules: &BondRules) -> Result<Bonds, 
             return Err(too_many());
         }
     }
-    Ok(Bonds::of_sorted(&bonds))
+    let mut bonds = Bonds::of_sorted(&bonds);
+    if rules.are_covalent() {
+        bridges::remove_bridged(&mut bonds, frame);
+    }
+    Ok(bonds)
 }
 
 /// The points to search, and the lengths of bonds.
@@ -197,7 +201,7 @@ mod tests {
             [xy, xz, yz] in [-1.5..1.5_f64, -1.5..1.5, -1.5..1.5],
             periodic in any::<[bool; 3]>(),
         ) {
-            let names = ["C", "H", "Na"];
+            let names = ["C", "Ar", "Na"];
             let points: Vec<_> =
                 points.iter().zip(names.into_iter().cycle()).map(|(place, name)| (*place, name)).collect();
             let mut frame = frame(&points);

@@ -1,5 +1,6 @@
 //! Bonds between the particles of a frame: those of the file, or those found by distance.
 
+mod bridges;
 mod components;
 mod distance;
 mod images;
@@ -8,10 +9,11 @@ mod rules;
 
 pub use crate::frame::Bonds;
 pub(crate) use crate::frame::{Bond, ordered};
+pub(crate) use components::Adjacency;
 pub use distance::from_distance;
 pub(crate) use images::nearest_image;
 pub(crate) use listed::{End, Listed, Numbering, row_from_one};
-pub use rules::{BondRules, BondSource};
+pub use rules::{BondRules, BondSource, PairRule};
 
 use crate::frame::ParticleFrame;
 

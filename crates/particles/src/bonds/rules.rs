@@ -59,9 +59,15 @@ pub(super) struct Cutoffs {
 
 impl BondRules {
     /// Returns the rule of covalent radii (Cordero et al. 2008): two atoms are bonded if they are more than
-    /// 0.4 angstrom apart, and at most the sum of their covalent radii and 0.45 angstrom.
+    /// 0.4 angstrom apart, and at most the sum of their covalent radii and 0.45 angstrom. A metal is not bonded across an
+    /// anion: neither to a metal to which an anion is bonded, too, nor, as far as it is, to an atom with a more
+    /// electronegative one between them.
     pub fn covalent() -> Self {
         Self { rules: None }
+    }
+
+    pub(super) fn are_covalent(&self) -> bool {
+        self.rules.is_none()
     }
 
     /// Returns the rule that all particles closer than a length are bonded.
@@ -82,25 +88,15 @@ impl BondRules {
         let Some(rules) = &self.rules else {
             return Ok(covalent(table, frame.unit.per_angstrom()));
         };
-        let matches = |name: &str, kind: &Kind| {
-            let element = || kind.element.is_some_and(|element| element.symbol() == name);
-            name == ANY || kind.name == *name || element()
-        };
-        for name in rules.iter().flat_map(|rule| &rule.names) {
-            if !frame.is_empty() && !table.iter().any(|kind| matches(name, kind)) {
-                let mut names: Vec<&str> = table.iter().map(|kind| kind.name.as_str()).collect();
-                names.extend(table.iter().filter_map(|kind| Some(kind.element?.symbol())));
-                names.sort_unstable();
-                names.dedup();
-                let help = suggest::help(name, names.into_iter(), "there are");
-                return Err(clipped(format!("has no type `{name}` for a rule of bonds; {help}")));
-            }
+        if !frame.is_empty() {
+            let names = rules.iter().flat_map(|rule| &rule.names);
+            names.into_iter().try_for_each(|name| check_name(name, table, "bonds"))?;
         }
         // Types that the same names match are one class.
         let mut classes: Vec<Vec<[bool; 2]>> = Vec::new();
         let class = table.iter().map(|kind| {
             let matched =
-                rules.iter().map(|rule| rule.names.each_ref().map(|name| matches(name, kind)));
+                rules.iter().map(|rule| rule.names.each_ref().map(|name| is_named(kind, name)));
             let matched: Vec<[bool; 2]> = matched.collect();
             classes.iter().position(|own| *own == matched).unwrap_or_else(|| {
                 classes.push(matched);
@@ -217,18 +213,76 @@ impl FromStr for BondRules {
 
 fn rule(text: &str) -> Result<Rule, String> {
     let text = text.trim();
-    let wrong = |why: &str| format!("invalid rule `{text}` for bonds: {why}, as in C-C<1.7");
-    let (pair, length) = text.split_once('<').ok_or_else(|| wrong("expected A-B<LENGTH"))?;
-    let length = length.trim_start_matches('=').trim();
-    let number = length.parse().ok().filter(|number: &f64| number.is_finite() && *number >= 0.0);
-    let length = number.ok_or_else(|| wrong(&format!("`{length}` is not a length")))?;
-    // Names may end with the sign of a charge, as in `O2--H`.
-    let names = pair.match_indices('-').map(|(at, _)| [pair[..at].trim(), pair[at + 1..].trim()]);
-    let complete = |names: &[&str; 2]| names.iter().all(|name| !name.is_empty());
-    let mut names = { names }.filter(complete);
-    let first = names.next().ok_or_else(|| wrong("expected two types with a `-` between them"))?;
-    let chosen = names.find(|names| names[0].ends_with('-') && !names[1].starts_with('-'));
-    Ok(Rule { names: chosen.unwrap_or(first).map(str::to_owned), length })
+    let wrong = |why: String| format!("invalid rule `{text}` for bonds: {why}, as in C-C<1.7");
+    let PairRule { names, length } = text.parse().map_err(wrong)?;
+    let length = length.ok_or_else(|| wrong("expected A-B<LENGTH".to_owned()))?;
+    Ok(Rule { names, length })
+}
+
+/// Two types or elements, and perhaps the length within which particles of them are meant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PairRule {
+    /// The names; `*` is any type.
+    pub names: [String; 2],
+    /// The length, 0 or more, in the file's unit.
+    pub length: Option<f64>,
+}
+
+impl FromStr for PairRule {
+    type Err = String;
+
+    /// Parses `A-B` or `A-B<LENGTH`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (pair, length) = match text.split_once('<') {
+            None => (text, None),
+            Some((pair, length)) => (pair, Some(length.trim_start_matches('=').trim())),
+        };
+        let length = length.map(|length| {
+            let number = length.parse().ok();
+            let number = number.filter(|number: &f64| number.is_finite() && *number >= 0.0);
+            number.ok_or_else(|| format!("`{length}` is not a length"))
+        });
+        let length = length.transpose()?;
+        // Names may end with the sign of a charge, as in `O2--H`.
+        let names =
+            pair.match_indices('-').map(|(at, _)| [pair[..at].trim(), pair[at + 1..].trim()]);
+        let complete = |names: &[&str; 2]| names.iter().all(|name| !name.is_empty());
+        let mut names = { names }.filter(complete);
+        let first = names.next().ok_or("expected two types with a `-` between them")?;
+        let chosen = names.find(|names| names[0].ends_with('-') && !names[1].starts_with('-'));
+        Ok(Self { names: chosen.unwrap_or(first).map(str::to_owned), length })
+    }
+}
+
+impl PairRule {
+    /// Returns the types that each of the names stands for, by rows of their table; `what` is what the rule is for.
+    ///
+    /// # Errors
+    ///
+    /// A message: there is no such type.
+    pub fn kinds(&self, table: &[Kind], what: &str) -> Result<[Vec<bool>; 2], String> {
+        self.names.iter().try_for_each(|name| check_name(name, table, what))?;
+        let named = |name: &String| table.iter().map(|kind| is_named(kind, name)).collect();
+        Ok(self.names.each_ref().map(named))
+    }
+}
+
+/// Returns whether a rule's name is that of a type or of its element, or stands for all types.
+fn is_named(kind: &Kind, name: &str) -> bool {
+    let element = || kind.element.is_some_and(|element| element.symbol() == name);
+    name == ANY || kind.name == *name || element()
+}
+
+fn check_name(name: &str, table: &[Kind], what: &str) -> Result<(), String> {
+    if name == ANY || table.iter().any(|kind| is_named(kind, name)) {
+        return Ok(());
+    }
+    let mut names: Vec<&str> = table.iter().map(|kind| kind.name.as_str()).collect();
+    names.extend(table.iter().filter_map(|kind| Some(kind.element?.symbol())));
+    names.sort_unstable();
+    names.dedup();
+    let help = suggest::help(name, names.into_iter(), "there are");
+    Err(clipped(format!("has no type `{name}` for a rule of {what}; {help}")))
 }
 
 #[cfg(test)]

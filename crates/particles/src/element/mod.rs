@@ -6,7 +6,7 @@ mod tables;
 pub(super) use names::{
     is_virtual_site, of_aligned_name, of_atom_name, of_autodock_type, of_group,
 };
-use tables::{COVALENT, MASSES, SYMBOLS, VAN_DER_WAALS};
+use tables::{COVALENT, IONIC, MASSES, SYMBOLS, VAN_DER_WAALS};
 
 /// A chemical element, by its atomic number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -89,6 +89,12 @@ impl Element {
         COVALENT.get(self.row()).copied()
     }
 
+    /// Effective ionic radius in angstrom at a coordination of 6 (Shannon, "Revised effective ionic radii", Acta
+    /// Crystallographica A32, 1976) of the commonest state of oxidation; `None` for elements that have none there.
+    pub fn ionic_radius(self) -> Option<f64> {
+        IONIC.get(self.row()).copied().filter(|&radius| radius > 0.0)
+    }
+
     fn row(self) -> usize {
         usize::from(self.0) - 1
     }
@@ -122,6 +128,33 @@ mod tests {
         assert_eq!(radii("Po"), (None, Some(1.40)));
         assert_eq!(radii("Es"), (Some(2.70), None));
         assert_eq!(radii("Og"), (None, None));
+    }
+
+    #[test]
+    fn ionic_radii_are_those_of_the_commonest_state() {
+        for (symbol, radius) in [
+            ("Li", 0.76),
+            ("N", 1.46),
+            ("O", 1.40),
+            ("Na", 1.02),
+            ("Cl", 1.81),
+            ("Ti", 0.605),
+            ("Mn", 0.83),
+            ("Fe", 0.645),
+            ("Sr", 1.18),
+            ("I", 2.20),
+            ("Cs", 1.67),
+            ("Lu", 0.861),
+            ("Pb", 1.19),
+            ("U", 0.73),
+            ("Cf", 0.95),
+        ] {
+            let found = Element::from_symbol(symbol).and_then(Element::ionic_radius);
+            assert_eq!(found, Some(radius), "{symbol}");
+        }
+        for symbol in ["H", "He", "Xe", "At", "Ra", "Es", "Og"] {
+            assert_eq!(Element::from_symbol(symbol).and_then(Element::ionic_radius), None);
+        }
     }
 
     #[test]

@@ -39,6 +39,28 @@ pub(super) const COVALENT: [f64; 96] = [
     1.45, 1.46, 1.48, 1.40, 1.50, 1.50, 2.60, 2.21, 2.15, 2.06, 2.00, 1.96, 1.90, 1.87, 1.80, 1.69,
 ];
 
+/// Effective ionic radii in angstrom at a coordination of 6, of manganese, iron and cobalt those of high spin; 0 where there is none.
+/// Shannon, "Revised effective ionic radii", Acta Crystallographica A32 (1976), DOI 10.1107/S0567739476001551, table 1. Of
+/// each element the commonest state of oxidation:
+/// - +1: the alkali metals, silver and thallium;
+/// - +2: the alkaline earths, manganese, cobalt, nickel, copper, zinc, palladium, cadmium, mercury and lead;
+/// - +3: boron, aluminum, scandium, chromium, iron, gallium, arsenic, yttrium, rhodium, indium, antimony, gold, bismuth, the
+///   lanthanides, actinium, and the actinides from americium on;
+/// - +4: carbon, silicon, titanium, germanium, zirconium, ruthenium, tin, hafnium, osmium, iridium, platinum, polonium, thorium
+///   and plutonium;
+/// - +5: phosphorus, vanadium, niobium, tantalum, protactinium and neptunium;
+/// - +6: molybdenum, tungsten and uranium; +7: technetium and rhenium;
+/// - -1: halogens; -2: oxygen, sulfur, selenium and tellurium; -3: nitrogen, at a coordination of 4.
+#[rustfmt::skip]
+pub(super) const IONIC: [f64; 98] = [
+    0.00, 0.00, 0.76, 0.45, 0.27, 0.16, 1.46, 1.40, 1.33, 0.00, 1.02, 0.72, 0.535, 0.40, 0.38, 1.84, 1.81,
+    0.00, 1.38, 1.00, 0.745, 0.605, 0.54, 0.615, 0.83, 0.645, 0.745, 0.69, 0.73, 0.74, 0.62, 0.53, 0.58, 1.98,
+    1.96, 0.00, 1.52, 1.18, 0.90, 0.72, 0.64, 0.59, 0.56, 0.62, 0.665, 0.86, 1.15, 0.95, 0.80, 0.69, 0.76,
+    2.21, 2.20, 0.00, 1.67, 1.35, 1.032, 1.01, 0.99, 0.983, 0.97, 0.958, 0.947, 0.938, 0.923, 0.912, 0.901, 0.89,
+    0.88, 0.868, 0.861, 0.71, 0.64, 0.60, 0.53, 0.63, 0.625, 0.625, 0.85, 1.02, 1.50, 1.19, 1.03, 0.94, 0.00,
+    0.00, 1.80, 0.00, 1.12, 0.94, 0.78, 0.73, 0.75, 0.86, 0.975, 0.97, 0.96, 0.95,
+];
+
 /// Standard atomic weights, abridged (IUPAC 2021), as far as uranium; of elements without any, the
 /// mass number of the isotope that lives longest.
 #[rustfmt::skip]

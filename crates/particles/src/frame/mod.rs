@@ -1,6 +1,7 @@
 //! A frame of particles, in columns.
 
 mod bonds;
+mod crystal;
 mod shapes;
 mod trails;
 
@@ -133,29 +134,7 @@ impl LengthUnit {
     }
 }
 
-impl Format {
-    /// Returns whether files of this format are those of crystals.
-    pub(crate) fn is_of_crystals(self) -> bool {
-        matches!(self, Self::Cif | Self::Poscar | Self::Xsf | Self::Cfg)
-    }
-}
-
 impl ParticleFrame {
-    /// Returns whether the particles are the atoms of a crystal, few enough that its structure can be seen: at most
-    /// 10,000 from a file of a format of crystals, of known elements and without radii, in a cell that is periodic in
-    /// all directions.
-    pub fn is_crystal(&self) -> bool {
-        /// The most atoms.
-        const MOST: usize = 10_000;
-        let is_periodic = self.cell.as_ref().is_some_and(|cell| cell.periodic == [true; 3]);
-        let mut kinds = self.kinds.table.iter();
-        self.format.is_of_crystals()
-            && is_periodic
-            && (1..=MOST).contains(&self.len())
-            && self.radius.is_empty()
-            && kinds.all(|kind| kind.element.is_some())
-    }
-
     /// Returns the number of particles.
     pub fn len(&self) -> usize {
         self.x.len()
@@ -184,6 +163,14 @@ impl ParticleFrame {
     /// Repeats all rows, `count` times in all, but not the bonds ([`Bonds::replicate`]).
     pub fn repeat(&mut self, count: usize) {
         self.change(RowChange::Repeat(count));
+    }
+
+    /// Appends copies of rows of `count` particles, but no bonds of theirs ([`Bonds::between`]).
+    pub fn append_rows(&mut self, count: usize, rows: &[u32]) {
+        let bonds = self.bonds.take();
+        let all: Vec<u32> = (0..count as u32).chain(rows.iter().copied()).collect();
+        self.change(RowChange::Pick(&all));
+        self.bonds = bonds;
     }
 
     /// Frees the unused capacity of columns.

@@ -43,7 +43,7 @@ pub(super) fn radii(
         let factor = frame.unit.per_angstrom() * options.scale * options.radius_scale;
         table_radii(&frame.kinds, radius, factor, warnings)
     };
-    let demanded = matches!(options.radii, Radii::VanDerWaals | Radii::Covalent);
+    let demanded = matches!(options.radii, Radii::VanDerWaals | Radii::Covalent | Radii::Ionic);
     if demanded && !has_elements {
         let message = "cannot use radii of elements: no particle has an element";
         return Err(FileError::whole_file(path, message)
@@ -54,6 +54,13 @@ pub(super) fn radii(
         Radii::Constant(radius) => vec![radius * options.radius_scale; count],
         Radii::VanDerWaals => table(warnings, Element::van_der_waals_radius),
         Radii::Covalent => table(warnings, Element::covalent_radius),
+        Radii::Ionic => {
+            let lacks = |kind: &&Kind| kind.element.is_some_and(|own| own.ionic_radius().is_none());
+            let lacking = frame.kinds.table.iter().filter(lacks);
+            let lacking: Vec<&str> = lacking.map(|kind| kind.name.as_str()).collect();
+            warnings.add_of("elements without ionic radii have covalent ones", &lacking);
+            table(warnings, |own| own.ionic_radius().or_else(|| own.covalent_radius()))
+        }
         _ if !own.is_empty() => {
             let factor = options.scale * options.radius_scale;
             let mut own = own;
