@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         ColorMap,
         LayerName,
         Model,
+        Outside,
         Position,
         Preset,
         Render,
@@ -57,6 +58,8 @@ if TYPE_CHECKING:
         bonds: str
         triangles: Any
         bond_radius: float
+        polyhedra: str | Sequence[str]
+        polyhedra_opacity: float
         opacity: float | str
         translucent: str
         hide: str
@@ -76,6 +79,8 @@ if TYPE_CHECKING:
         up: UpAxis
         wrap: bool
         replicate: tuple[int, int, int]
+        complete: bool
+        outside: Outside
         show_cell: bool
         slices: Sequence[str]
         slice_mode: SliceMode
@@ -99,8 +104,9 @@ PARTICLES = frozenset("radius semi_axes orientation color kinds materials column
 #: Arguments that say how particles are drawn.
 STYLE = frozenset(
     "values radius_scale select colors color_by color_map color_range color_title color_log color_bar "
-    "label_of_values types model "
-    "bonds bond_radius opacity translucent hide styles arrows arrow_scale arrow_radius arrow_color arrow_center preset background view look_at zoom roll up wrap replicate show_cell slices slice_mode".split()
+    "label_of_values types model bonds bond_radius polyhedra polyhedra_opacity opacity translucent hide styles "
+    "arrows arrow_scale arrow_radius arrow_color arrow_center "
+    "preset background view look_at zoom roll up wrap replicate complete outside show_cell slices slice_mode".split()
 )
 
 #: Sections of scene files; the color bar is one, too, if it is a dict.

@@ -30,8 +30,8 @@ class Scene:
 
     Args:
         particles: :class:`Particles`, (n, 3) positions, a tuple of the columns x, y and z, or None.
-        radius: A number or (n,) numbers, more than 0, in the unit of the positions; or ``"vdw"`` or ``"covalent"``,
-            radii of elements; or ``"column:NAME"``, of which the name may be an expression as in
+        radius: A number or (n,) numbers, more than 0, in the unit of the positions; or ``"vdw"``, ``"covalent"`` or
+            ``"ionic"``, radii of elements; or ``"column:NAME"``, of which the name may be an expression as in
             ``"column:0.3 * mass^(1/3)"``. By default the particles' own, or those of elements, or half of the
             mean spacing.
         semi_axes, orientation: Semi-axes and quaternions of ellipsoids, as for :class:`Particles`.
@@ -56,8 +56,11 @@ class Scene:
         model: ``"space-filling"``, ``"ball-and-stick"`` or ``"licorice"``: whether bonds are drawn, as sticks. Without
             it and without ``bonds``, crystals from CIF, POSCAR, XSF or CFG are balls and sticks in their cell: at most
             10,000 atoms of known elements, periodic in all directions.
-        bonds: ``"auto"`` for those of the particles, or else by covalent radii; ``"file"`` for those of the
-            particles alone, ``"none"``, or rules such as ``"C-C<1.7,*-H<1.2"``;
+        polyhedra: Coordination polyhedra to draw, as in ``"Ti-O"`` or ``"Ti-O<2.5,Si-O<2"``, or a list of such: the hulls of
+            the neighbors of each center, which are bonded to it or closer than a distance. ``polyhedra_opacity`` is
+            that of their faces, 0.7 by default.
+        bonds: ``"auto"`` for those of the particles, or else by covalent radii, of metals not across anions;
+            ``"file"`` for those of the particles alone, ``"none"``, or rules such as ``"C-C<1.7,*-H<1.2"``;
             ``bond_radius`` is the radius of their sticks.
         opacity: A number from 0 to 1, or the name of a column or an expression whose numbers it is, perhaps with those
             that become 0 and 1, as in ``"charge:-1,1"``: what is behind is seen without refraction.
@@ -84,6 +87,10 @@ class Scene:
         camera: The section, or the scene file that the camera is taken from, as the viewer saves it.
         up: The direction of particles that is up.
         wrap, replicate, show_cell: Wrap particles into the cell; repeat it; draw its edges.
+        complete: Whether particles on faces, edges and corners of the cell are drawn on the opposite ones, too; by default
+            for small crystals of files.
+        outside: Bonds that leave the cell: ``"whole"``, with the particles at their other ends, ``"none"``, or
+            ``"halves"``; by default none in a completed cell, and else halves.
         slices: Planes that cut spheres away, as in ``["z > 50%"]``; ``slice_mode`` is ``"remove"``, ``"caps"`` or
             ``"hide"``.
         render, look, label, lettering, environment, ground, slice, light, material,
@@ -385,6 +392,13 @@ def _style(given: Mapping[str, Any]) -> dict[str, Any]:
     if not (through is None or isinstance(through, str)):
         through = repr(_values.number("opacity", through))
     style["opacity"] = through
+    polyhedra = given.get("polyhedra")
+    if not (polyhedra is None or isinstance(polyhedra, str)):
+        polyhedra = ",".join(_values.items("polyhedra", polyhedra, _values.text))
+    style["polyhedra"] = polyhedra
+    style["polyhedra_opacity"] = _optional(given, "polyhedra_opacity", _values.number)
+    if polyhedra is None and style["polyhedra_opacity"] is not None:
+        raise Error("`polyhedra_opacity` needs `polyhedra`")
     style.update(_arrows(given))
     style["bond_radius"] = _optional(given, "bond_radius", _values.number)
     color_log = _values.flag("color_log", given.get("color_log", False))
@@ -483,7 +497,7 @@ def _view(given: Mapping[str, Any], annotations: Mapping[str, Any], camera: str 
     usual = {"color_bar": "bottom-right", **_PLACED}
     placed = {name: _placed(name, annotations.get(name), position) for name, position in usual.items()}
     flags = {name: _values.flag(name, given.get(name, False)) for name in ("wrap", "show_cell")}
-    words = {name: _optional(given, name, _values.text) for name in ("preset", "up", "slice_mode")}
+    words = {name: _optional(given, name, _values.text) for name in ("preset", "up", "slice_mode", "outside")}
     words |= {name: _optional(given, name, _numbers) for name in ("view", "look_at")}
     words["camera"] = camera
     numbers = {name: _optional(given, name, _values.number) for name in ("zoom", "roll")}
@@ -492,5 +506,6 @@ def _view(given: Mapping[str, Any], annotations: Mapping[str, Any], camera: str 
         replicate = _values.items(
             "replicate", replicate, lambda name, copies: _values.integer(name, copies, 1, 2**32 - 1), 3
         )
+    words["complete"] = _optional(given, "complete", _values.flag)
     slices = _values.items("slices", given.get("slices", ()), _values.text)
     return {**words, **numbers, **flags, "replicate": replicate, **placed, "slices": slices}

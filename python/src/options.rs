@@ -13,7 +13,7 @@ use spherule::particles::{
 };
 use spherule::scene::particles::{
     ArrowCentering, ArrowStyle, BondSource, ColorEnds, Coloring, ColumnColors, ElementColors,
-    Model, Opacity, ParticleStyle, Properties, SelectedStyle, Selection, TypeMaterial, TypeStyle,
+    Model, Opacity, ParticleStyle, Polyhedra, Properties, SelectedStyle, Selection, TypeMaterial, TypeStyle,
     accept_radii_expression,
 };
 use std::str::FromStr;
@@ -29,7 +29,7 @@ pub(crate) type CellTuple = ([f64; 3], [[f64; 3]; 3], [bool; 3]);
 #[pyo3(from_item_all)]
 pub(crate) struct ParticleTable<'py> {
     positions: Bound<'py, PyAny>,
-    /// `vdw`, `covalent` or a number.
+    /// `vdw`, `covalent`, `ionic` or a number.
     radii: Option<String>,
     radius: Option<Bound<'py, PyAny>>,
     radius_scale: f64,
@@ -77,6 +77,8 @@ pub(crate) struct StyleTable {
     model: Option<String>,
     bonds: Option<String>,
     bond_radius: Option<f64>,
+    polyhedra: Option<String>,
+    polyhedra_opacity: Option<f64>,
     opacity: Option<String>,
     translucent: Option<String>,
     arrows: Option<String>,
@@ -226,6 +228,13 @@ impl StyleTable {
             return Err(fault(format!("`bond_radius` is {radius}, but must be more than 0")));
         }
         let bond_radius = self.bond_radius;
+        let polyhedra = self.polyhedra.as_deref().map(Polyhedra::from_str).transpose();
+        let polyhedra = polyhedra.map_err(|why| fault(format!("`polyhedra`: {why}")))?;
+        let mut polyhedra = polyhedra.unwrap_or_default();
+        polyhedra.opacity = self.polyhedra_opacity;
+        if let Some(opacity) = polyhedra.opacity.filter(|opacity| !(0.0..=1.0).contains(opacity)) {
+            return Err(fault(format!("`polyhedra_opacity` is {opacity}, but must be 0 to 1")));
+        }
         let types = self.types.into_iter().map(|(name, radius, color, material, opacity)| {
             let named = |word: &String| TypeMaterial::ALL.iter().find(|(own, _)| own == word);
             let known = material.as_ref().map(|word| {
@@ -265,6 +274,7 @@ impl StyleTable {
             model,
             bonds,
             bond_radius,
+            polyhedra,
             opacity,
             translucent,
             arrows,

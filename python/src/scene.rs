@@ -12,7 +12,7 @@ use spherule::compose::{
     Value,
 };
 use spherule::particles::{FileError, NumberColumn, ParticleFrame, ReadOptions};
-use spherule::scene::particles::{FirstFrame, ParticleStyle, of_frame_in};
+use spherule::scene::particles::{Boundary, FirstFrame, Outside, ParticleStyle, of_frame_in};
 use spherule::scene::{
     Anchor, Axis, Camera, EnvironmentMap, Preset, SliceMode, SlicePlane, Spheres,
     text_without_columns, write,
@@ -87,6 +87,8 @@ struct ViewTable {
     up: Option<String>,
     wrap: bool,
     replicate: Option<[u32; 3]>,
+    complete: Option<bool>,
+    outside: Option<String>,
     show_cell: bool,
     /// The position of the color bar.
     color_bar: Option<String>,
@@ -338,7 +340,13 @@ impl ViewTable {
             let refused = || format!("`{name}` is \"{word}\", but must be {}", all.join(", "));
             find(word).map(Some).ok_or_else(refused)
         }
-        let Self { wrap, replicate: copies, show_cell: show, .. } = *self;
+        let Self { wrap, replicate: copies, complete, show_cell: show, .. } = *self;
+        let outside = |name: &str| {
+            Outside::ALL.iter().find(|(own, _)| *own == name).map(|(_, outside)| *outside)
+        };
+        let treatments = Outside::ALL.map(|(name, _)| name);
+        let outside = word("outside", self.outside.as_ref(), outside, &treatments)?;
+        let boundary = Boundary { complete, outside };
         let presets = Preset::ALL.map(Preset::name);
         let preset = |name: &str| Preset::ALL.into_iter().find(|preset| preset.name() == name);
         let mode =
@@ -388,7 +396,7 @@ impl ViewTable {
                 ..CameraRequest::default()
             },
             up: word("up", self.up.as_ref(), Axis::named, &axes)?,
-            cell: CellRequest { wrap, copies, show },
+            cell: CellRequest { wrap, copies, show, boundary },
             annotations,
             planes: planes.collect::<Result<_, _>>()?,
             slice_mode: word("slice_mode", self.slice_mode.as_ref(), mode, &modes)?
@@ -482,9 +490,13 @@ impl Work {
     fn renumbers(&self) -> bool {
         // Radii may be 0 after a factor: their rows are dropped.
         let scaled = self.options.radius_scale != 1.0;
-        let style = &self.request.style;
+        let Request { style, cell: CellRequest { copies, boundary, .. }, .. } = &self.request;
+        let has_images = self.frame.cell.is_some()
+            && (boundary.complete.unwrap_or_else(|| self.frame.has_crystal_cell())
+                || boundary.outside == Some(Outside::Whole)
+                || !style.polyhedra.is_empty());
         let drops = style.select.is_some() || !style.styles.is_empty();
-        drops || self.request.cell.copies.is_some() || scaled
+        drops || copies.is_some() || scaled || has_images
     }
 }
 

@@ -12,6 +12,12 @@ GROUPS = [
     [({"wrap": True}, ["--wrap"])],
     [({"replicate": (2, 1, 1)}, ["--replicate", "2,1,1"])],
     [({"show_cell": True}, ["--cell"])],
+    [({"complete": True}, ["--complete", "yes"]), ({"complete": False}, ["--complete", "no"])],
+    [({"outside": outside}, ["--outside", outside]) for outside in ("whole", "none", "halves")],
+    [
+        ({"polyhedra": "Cu-*<3"}, ["--polyhedra", "Cu-*<3"]),
+        ({"polyhedra": ["Ni-Cu", "Cu-Cu<3"], "polyhedra_opacity": 1.0}, ["--polyhedra", "Ni-Cu,Cu-Cu<3", "--polyhedra-opacity", "1"]),
+    ],
     [({"up": axis}, ["--up", axis]) for axis in ("x", "-y", "z")],
     [({"view": side}, ["--view", side]) for side in ("auto", "iso", "-x", "y", "z")],
     [

@@ -387,6 +387,29 @@ def test_crystals_are_balls_and_sticks_in_their_cell(tmp_path):
         text = (tmp_path / "scene.toml").read_text()
         return len(scene), "[[stick]]" in text, "\ncell = " in text
 
-    assert saved() == (8, True, True)
-    assert saved(model="space-filling") == saved(bonds="none") == (8, False, False)
-    assert saved(model="ball-and-stick") == (8, True, False)
+    assert saved() == (27, True, True)
+    assert saved(model="space-filling") == saved(bonds="none") == (27, False, False)
+    assert saved(model="ball-and-stick") == (27, True, False)
+    assert saved(complete=False) == (8, True, True)
+    assert saved(complete=False, replicate=(2, 1, 1)) == (16, True, True)
+    assert saved(replicate=(2, 1, 1)) == (45, True, True)
+    assert saved(outside="whole")[0] > 27
+    scene = spherule.Scene.load(tmp_path / "POSCAR", polyhedra=["Na-Cl"], polyhedra_opacity=1)
+    ids = scene.render(layers="id", size=(60, 60), spp=1).layers["id"]
+    assert {row for row in ids.ravel().tolist() if row < 8} == set(range(8))
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"polyhedra": "Cu"}, "two types"),
+        ({"polyhedra": "Cu-Xx<2"}, "no type `Xx`"),
+        ({"polyhedra": "Cu-Cu<3", "polyhedra_opacity": 2}, "0 to 1"),
+        ({"polyhedra_opacity": 0.5}, "needs `polyhedra`"),
+        ({"outside": "some"}, "whole, none, halves"),
+        ({"complete": True}, "no cell"),
+    ],
+)
+def test_boundaries_and_polyhedra_that_cannot_be_are_refused_by_name(options, message):
+    with pytest.raises(spherule.Error, match=message):
+        spherule.Scene([[0, 0, 0], [2, 0, 0]], kinds=["Cu", "Cu"], **options)

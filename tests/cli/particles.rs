@@ -226,6 +226,40 @@ fn crystals_are_balls_and_sticks_in_their_cell() {
 }
 
 #[test]
+fn cells_of_crystals_are_completed_and_have_polyhedra() {
+    let folder = Folder::new();
+    folder.write(
+        "rutile.poscar",
+        "TiO2\n1\n4.594 0 0\n0 4.594 0\n0 0 2.9586\nTi O\n2 4\nDirect\n0 0 0\n.5 .5 .5\n\
+         .3051 .3051 0\n.6949 .6949 0\n.1949 .8051 .5\n.8051 .1949 .5\n",
+    );
+    folder.write("water.xyz", WATER);
+    let bodies = |more: &[&str]| {
+        let args = ["rutile.poscar", "--json", "-o", "a.png"];
+        let statistics = &folder.json(&[&SMALL[..], &args, more].concat())["statistics"];
+        ["spheres", "sticks", "triangles"].map(|kind| statistics[kind].as_u64())
+    };
+    // Nine titanium atoms, and two oxygen atoms on each of two faces and in the middle.
+    assert_eq!(bodies(&[]), [15, 14, 0].map(Some));
+    assert_eq!(bodies(&["--complete", "no"])[0], Some(6));
+    assert_eq!(bodies(&["--complete", "no", "--outside", "none", "--cell"])[0], Some(6));
+    assert!(bodies(&["--outside", "whole"])[0] > Some(15));
+    let [spheres, _, triangles] = bodies(&["--polyhedra", "Ti-O"]);
+    assert!(spheres > Some(15) && triangles == Some(9 * 8), "{spheres:?} {triangles:?}");
+    assert_eq!(bodies(&["--polyhedra", "Ti-O<2.2", "--outside", "none"])[2], Some(8));
+    for (args, part) in [
+        (&["rutile.poscar", "--polyhedra", "Ti-N"][..], "no type `N`"),
+        (&["rutile.poscar", "--polyhedra", "Ti"], "two types"),
+        (&["rutile.poscar", "--outside", "some"], "whole"),
+        (&["water.xyz", "--complete", "yes"], "no cell"),
+    ] {
+        let output = folder.run(&[&["render", "-o", "b.png"], args].concat());
+        let stderr = text(&output.stderr);
+        assert!(!output.status.success() && stderr.contains(part), "{args:?}: {stderr}");
+    }
+}
+
+#[test]
 fn bonds_that_cannot_be_drawn_are_refused() {
     let folder = Folder::new();
     folder.write("water.xyz", WATER);

@@ -8,7 +8,7 @@ use spherule_render::color::{self, Map, Spacing};
 use spherule_render::graphics::Format;
 use spherule_render::scene::particles::{
     ArrowCentering, ArrowStyle, BondSource, ColorEnds, Coloring, ColumnColors, ElementColors,
-    Legend, Model, NumberColors, Opacity, ParticleStyle, SelectedStyle, Selection, TypeStyle,
+    Legend, Model, NumberColors, Opacity, ParticleStyle, Polyhedra, SelectedStyle, Selection, TypeStyle,
     VectorColumns,
 };
 use spherule_render::scene::{Anchor, Rgb};
@@ -60,10 +60,11 @@ pub(in crate::cli) struct AppearanceArgs {
     #[arg(long, requires = "color_by")]
     color_log: bool,
     /// Model of molecules: spheres of the particles' radii, small spheres with sticks for bonds, or sticks alone
-    /// [default: space-filling, or ball-and-stick with --bonds]
+    /// [default: space-filling, or ball-and-stick with --bonds or --polyhedra and for crystals]
     #[arg(long, value_name = "MODEL", value_parser = model())]
     model: Option<Model>,
-    /// Bonds to draw: file, those of the file; auto, those of the file or else by covalent radii; none; or rules
+    /// Bonds to draw: file, those of the file; auto, those of the file or else by covalent radii, of metals not across
+    /// anions; none; or rules
     /// for types or elements, in the file's unit, as in C-C<1.7,*-H<1.2 [default: auto with a model that draws
     /// bonds]
     #[arg(
@@ -72,9 +73,22 @@ pub(in crate::cli) struct AppearanceArgs {
         value_parser = |text: &str| text.parse::<WithText<BondSource>>()
     )]
     bonds: Option<WithText<BondSource>>,
-    /// Radius of the sticks of bonds, in the file's unit [default: a tenth of the median radius, 0.15 in licorice]
+    /// Radius of the sticks of bonds, in the file's unit [default: a tenth of the median radius, but less than the smallest
+    /// ball; 0.15 in licorice]
     #[arg(long, value_name = "R", value_parser = values::positive)]
     bond_radius: Option<f64>,
+    /// Draw coordination polyhedra, as in Ti-O or Ti-O<2.5,Si-O<2: the convex hulls of the neighbors of each center, of its
+    /// color, which are bonded to it or closer than a distance in the file's unit; may be repeated. Corners outside the
+    /// cell are drawn, too, unless with --outside none
+    #[arg(
+        long,
+        value_name = "CENTER-CORNER[<R],...",
+        value_parser = |text: &str| text.parse::<WithText<Polyhedra>>()
+    )]
+    polyhedra: Vec<WithText<Polyhedra>>,
+    /// Opacity of the faces of polyhedra, 0 to 1 [default: 0.7]
+    #[arg(long, value_name = "NUMBER", requires = "polyhedra", value_parser = values::share)]
+    polyhedra_opacity: Option<f64>,
     /// Opacity of particles, and of their bonds: a number from 0 to 1, as in 0.3 or 30%, or a column or expression whose numbers it is,
     /// perhaps with those that become 0 and 1, as in charge:-1,1. What is behind is seen without refraction, and shadows are as
     /// thin [default: 1, or 0.2 with --translucent]
@@ -266,6 +280,7 @@ impl AppearanceArgs {
             model: self.model,
             bonds: self.bonds.as_deref().cloned(),
             bond_radius: self.bond_radius,
+            polyhedra: self.polyhedra(),
             opacity: self.opacity.as_deref().cloned(),
             translucent: self.translucent.as_deref().cloned(),
             arrows: self.arrows(),
@@ -296,6 +311,8 @@ impl AppearanceArgs {
         lists::put(&mut list, "model", self.model.map(Model::name));
         lists::put(&mut list, "bond_radius", self.bond_radius);
         with_text::insert(&mut list, "bonds", &self.bonds);
+        with_text::insert(&mut list, "polyhedra", &self.polyhedra);
+        lists::put(&mut list, "polyhedra_opacity", self.polyhedra_opacity);
         with_text::insert(&mut list, "opacity", &self.opacity);
         with_text::insert(&mut list, "translucent", &self.translucent);
         with_text::insert(&mut list, "arrows", &self.arrows);
@@ -309,6 +326,14 @@ impl AppearanceArgs {
         with_text::insert(&mut list, "hide", &self.hide);
         with_text::insert(&mut list, "style", &self.styles);
         list
+    }
+
+    /// The polyhedra that are asked for.
+    fn polyhedra(&self) -> Polyhedra {
+        let mut all = Polyhedra::default();
+        self.polyhedra.iter().for_each(|own| all.extend((**own).clone()));
+        all.opacity = self.polyhedra_opacity;
+        all
     }
 
     /// The arrows that are asked for.

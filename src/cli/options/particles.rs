@@ -27,9 +27,9 @@ pub(in crate::cli) struct ParticleArgs {
     /// numbered image of each frame, with one camera that frames all of them
     #[arg(long, value_name = "N|first|last|all|A-B", value_parser = |text: &str| text.parse::<WithText<FrameArg>>())]
     frame: Option<WithText<FrameArg>>,
-    /// Radii: vdw or covalent by element, a column of the file or an expression, as in 'column:0.3*mass^(1/3)', or
-    /// one radius for all
-    #[arg(long, value_name = "vdw|covalent|column:EXPR|R", value_parser = |text: &str| text.parse::<WithText<Radii>>())]
+    /// Radii: vdw, covalent or ionic by element, a column of the file or an expression, as in 'column:0.3*mass^(1/3)',
+    /// or one radius for all
+    #[arg(long, value_name = "vdw|covalent|ionic|column:EXPR|R", value_parser = |text: &str| text.parse::<WithText<Radii>>())]
     radii: Option<WithText<Radii>>,
     /// Scale factor for all radii
     #[arg(long, value_name = "FACTOR", value_parser = values::positive)]

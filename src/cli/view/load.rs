@@ -174,7 +174,7 @@ fn stage(
     let mut request = Request {
         style: restyled(setup, content, arrow_sizes, &mut particles),
         // They are wrapped and replicated as they are read.
-        cell: CellRequest { show: setup.request.cell.show, ..CellRequest::default() },
+        cell: CellRequest { wrap: false, copies: None, ..setup.request.cell },
         keeps_labels: true,
         ..setup.request.clone()
     };

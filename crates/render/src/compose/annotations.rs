@@ -151,6 +151,8 @@ pub(super) struct Facts {
     pub(super) cell: Option<Cell>,
     /// Symbol of the unit of length; empty if the unit is unknown.
     unit: &'static str,
+    /// Number of particles without images of them at the boundary of their cell; `None` if the scene is not of particles.
+    pub(super) particles: Option<usize>,
     /// Step, time and the header's values; `None` if the scene is not of particles.
     header: Option<Header>,
 }
@@ -179,6 +181,7 @@ impl Facts {
             },
             cell: particles.frame.cell,
             unit: particles.frame.unit.symbol(),
+            particles: Some(particles.spheres.len()),
             header: Some(Header {
                 step: particles.frame.step,
                 time: particles.frame.time,
@@ -203,7 +206,8 @@ impl Facts {
         }
         let path = subject.path.to_string_lossy();
         let file = path.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
-        let particles = scene.spheres.len() + scene.ellipsoids.len();
+        let drawn = scene.spheres.len() + scene.ellipsoids.len();
+        let particles = self.particles.map_or(drawn, |particles| particles.min(drawn));
         let own = [
             ("time", time),
             ("step", step),

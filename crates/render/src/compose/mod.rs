@@ -26,7 +26,7 @@ pub use self::template::{Template, Value};
 
 use self::annotations::Facts;
 use crate::scene::particles::{
-    Applied, ArrowSizes, Category, Cell, Kinds, Legend, NumberColumn, Orientation, ParticleStyle,
+    Applied, ArrowSizes, Boundary, Category, Cell, Kinds, Legend, NumberColumn, Orientation, ParticleStyle,
     Particles, PeriodicError, Shapes, TextColumn, UpReason,
 };
 use crate::scene::{Axis, Background, Camera, FileError, Preset, Scene, SliceMode, SlicePlane};
@@ -83,6 +83,8 @@ pub struct CellRequest {
     pub copies: Option<[u32; 3]>,
     /// True to draw its edges.
     pub show: bool,
+    /// Particles and bonds at its boundary.
+    pub boundary: Boundary,
 }
 
 /// The file, title and frame of a composed scene.
@@ -299,12 +301,14 @@ fn of_particles(
     let cell = particles.frame.cell;
     let focus = camera::point_in_focus(request, path, &particles)?;
     let framed = particles.framed(path, &request.style)?;
-    let mut rows = take_rows(&mut particles);
-    let ellipsoid_rows = rows.as_mut().map(|rows| take_ellipsoids(rows, &particles.frame.shapes));
-    // Copies have made it larger.
-    facts.cell = cell;
+    // Copies have made both larger.
+    (facts.cell, facts.particles) = (cell, Some(particles.spheres.len()));
     let shared = shared.and_then(|shared| shared.orientation);
     let orientation = shared.unwrap_or_else(|| request.orientation(&particles));
+    // All above is that of the particles of the file, without their images at the boundary.
+    draw_boundary(request, path, &mut particles)?;
+    let mut rows = take_rows(&mut particles);
+    let ellipsoid_rows = rows.as_mut().map(|rows| take_ellipsoids(rows, &particles.frame.shapes));
     let arrow_sizes = particles.arrows.sizes;
     let first_frame = particles.first_frame.as_ref().map(|first| first.spheres);
     let mut labels = Labels::default();
@@ -377,6 +381,18 @@ pub fn repeat(
         return Err(FileError::whole_file(path, "has no simulation cell to draw"));
     }
     Ok(())
+}
+
+/// Finds the polyhedra of particles, and draws the boundary of their cell.
+fn draw_boundary(
+    request: &Request,
+    path: &Path,
+    particles: &mut Particles,
+) -> Result<(), FileError> {
+    let style = &request.style;
+    let polyhedra = style.polyhedra.find(path, particles, style.allow_empty)?;
+    let drawn = particles.draw_boundary(request.cell.boundary, &polyhedra);
+    drawn.map_err(|error| FileError::whole_file(path, error.to_string()))
 }
 
 /// Takes the column [`ROWS`], if there is one.

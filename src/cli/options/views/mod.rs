@@ -12,7 +12,7 @@ use super::with_text::{self, WithText};
 use crate::cli::failure::Failure;
 use clap::value_parser;
 use spherule_render::compose::{CameraRequest, CellRequest, LensRequest, LookAt};
-use spherule_render::scene::particles::{Orientation, Selection, UpReason};
+use spherule_render::scene::particles::{Boundary, Orientation, Outside, Selection, UpReason};
 use spherule_render::scene::{Axis, Camera, FileError, Projection, Scene};
 use spherule_render::world::framing::view::{self, View};
 use std::f64::consts::TAU;
@@ -43,6 +43,27 @@ pub(in crate::cli) fn from_side(
 /// Range of the number of images of a turntable.
 const PICTURES: std::ops::RangeInclusive<i64> = 1..=100_000;
 
+/// Words of `--complete`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Completion {
+    /// For crystals
+    Auto,
+    /// Complete the cell
+    Yes,
+    /// Draw particles where they are
+    No,
+}
+
+impl Completion {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Yes => "yes",
+            Self::No => "no",
+        }
+    }
+}
+
 /// Options for the simulation cell and the camera.
 #[derive(Clone, Debug, Default, clap::Args)]
 #[command(next_help_heading = "Cell and view")]
@@ -53,6 +74,19 @@ pub(in crate::cli) struct ViewArgs {
     /// Replicate the cell NA, NB and NC times along its edges
     #[arg(long, value_name = "NA,NB,NC", value_parser = values::copies)]
     replicate: Option<[u32; 3]>,
+    /// Draw particles on faces, edges and corners of the cell on the opposite ones, too [default: auto, which does so for
+    /// crystals: files of CIF, POSCAR, XSF and CFG with at most 1000 atoms, and extended XYZ and ASE trajectories of a
+    /// single frame with at most 100, in a cell that is periodic in all directions]
+    #[arg(long, value_name = "auto|yes|no", value_enum)]
+    complete: Option<Completion>,
+    /// Bonds that leave the cell: whole, with the particles at their other ends; none; or their halves inside [default:
+    /// none in a completed cell, or else halves]
+    #[arg(
+        long,
+        value_name = "whole|none|halves",
+        value_parser = |name: &str| values::named(&Outside::ALL, name, "treatments of bonds are")
+    )]
+    outside: Option<Outside>,
     /// Draw the cell's edges
     #[arg(long)]
     cell: bool,
@@ -111,7 +145,8 @@ impl ViewArgs {
 
     /// Returns whether an option needs a particle file with a cell.
     pub(in crate::cli) fn needs_cell(&self) -> bool {
-        self.wrap || self.cell || self.replicate.is_some()
+        let boundary = self.complete.is_some() || self.outside.is_some();
+        self.wrap || self.cell || self.replicate.is_some() || boundary
     }
 
     /// Returns whether `--up` is given, which needs a particle file.
@@ -124,6 +159,8 @@ impl ViewArgs {
         let mut list = List::new();
         lists::put(&mut list, "wrap", self.wrap.then_some(true));
         lists::put(&mut list, "replicate", self.replicate.map(|[a, b, c]| format!("{a},{b},{c}")));
+        lists::put(&mut list, "complete", self.complete.map(Completion::name));
+        lists::put(&mut list, "outside", self.outside.map(Outside::name));
         lists::put(&mut list, "cell", self.cell.then_some(true));
         lists::put(&mut list, "up", self.up.map(UpArg::name));
         lists::put(&mut list, "view", self.view.map(|view| view.to_string()));
@@ -153,7 +190,8 @@ impl ViewArgs {
     /// Rejects options that apply only to particle files.
     pub(in crate::cli) fn refuse_cells(&self) -> Result<(), Failure> {
         if self.needs_cell() {
-            let message = "--wrap, --replicate and --cell need a particle file";
+            let message =
+                "--wrap, --replicate, --complete, --outside and --cell need a particle file";
             return Err(Failure::usage("render", message));
         }
         Ok(())
@@ -161,7 +199,12 @@ impl ViewArgs {
 
     /// Returns what is done to the cell.
     pub(in crate::cli) fn cell(&self) -> CellRequest {
-        CellRequest { wrap: self.wrap, copies: self.replicate, show: self.cell }
+        let complete = match self.complete {
+            None | Some(Completion::Auto) => None,
+            Some(word) => Some(word == Completion::Yes),
+        };
+        let boundary = Boundary { complete, outside: self.outside };
+        CellRequest { wrap: self.wrap, copies: self.replicate, show: self.cell, boundary }
     }
 
     /// Returns the direction that is up, if one is chosen.

@@ -206,8 +206,9 @@ impl Scene {
                 .warnings
                 .push(format!("{title}: {}", clipped(listed(&reason, &unknown))));
         }
-        let materials = materials.into_rows();
-        let sticks = particles.sticks(&materials, &rows);
+        let mut materials = materials.into_rows();
+        let mut sticks = particles.sticks(&materials, &rows);
+        let triangles = particles.append_polyhedra(&mut materials, &rows, &mut sticks);
         let cones = particles.cones(&materials, &rows);
         let ellipsoids = particles.take_ellipsoids(&materials, &rows, title);
         let mut spheres = Spheres::default();
@@ -218,6 +219,7 @@ impl Scene {
             sticks,
             ellipsoids,
             cones,
+            triangles,
             materials,
             warnings: particles.frame.warnings,
             ..Self::default()

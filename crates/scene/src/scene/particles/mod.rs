@@ -3,20 +3,24 @@
 //! The package `spherule-particles` reads files into a [`ParticleFrame`]; here it becomes [`Particles`],
 //! whose spheres have radii and colors.
 
+mod boundary;
 mod ellipsoids;
 mod first_frame;
 mod model;
 mod orientation;
 mod periodic;
+mod polyhedra;
 mod radii;
 mod select;
 mod spheres;
 mod style;
 
+pub use boundary::{AddedBodies, Boundary, Outside};
 pub use first_frame::{FirstFrame, TrajectoryReader};
 pub use model::Model;
 pub use orientation::{Orientation, UpReason};
 pub use periodic::PeriodicError;
+pub use polyhedra::{Coordination, Polyhedra};
 pub use radii::accept_radii_expression;
 pub use select::{Fault, MoleculeCensus, Selection};
 pub use spheres::Particles;

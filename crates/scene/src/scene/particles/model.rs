@@ -22,6 +22,11 @@ const BALL: f64 = 0.25;
 /// Radius of sticks between balls, relative to the median radius of particles.
 const STICK: f64 = 0.1;
 
+/// Maximum radius of sticks between balls, relative to that of the smallest ball, which they would hide; and the least one of
+/// them, relative to the usual radius.
+const OF_BALL: f64 = 0.6;
+const THINNEST: f64 = 0.25;
+
 /// Radius of sticks without balls, likewise: 0.25 angstrom for carbon, as in `PyMOL`.
 const LICORICE: f64 = 0.15;
 
@@ -60,9 +65,12 @@ impl Model {
         }
     }
 
-    /// Returns the usual radius of sticks among particles of this median radius.
-    fn stick(self, median: f64) -> f64 {
-        median * if self == Self::Licorice { LICORICE } else { STICK }
+    /// Returns the usual radius of sticks among particles of this median and this least radius.
+    fn stick(self, median: f64, least: f64) -> f64 {
+        match self {
+            Self::Licorice => LICORICE * median,
+            _ => (OF_BALL * BALL * least).clamp(THINNEST * STICK * median, STICK * median),
+        }
     }
 }
 
@@ -86,9 +94,10 @@ pub(super) fn apply(
 ) {
     let Some(median) = median(&particles.spheres.radius) else { return };
     let radii = &mut particles.spheres.radius;
+    let least = radii.iter().copied().fold(f64::INFINITY, f64::min);
     if parts.is_empty() {
         if base.draws_bonds() {
-            let stick = bond_radius.unwrap_or_else(|| base.stick(median));
+            let stick = bond_radius.unwrap_or_else(|| base.stick(median, least));
             for radius in radii.iter_mut() {
                 *radius = base.radius(*radius, stick);
             }
@@ -112,7 +121,7 @@ pub(super) fn apply(
     particles.stick_radii = vec![0.0; count];
     for (row, radius) in radii.iter_mut().enumerate() {
         let model = models[row];
-        let stick = sticks[row].unwrap_or_else(|| model.stick(median));
+        let stick = sticks[row].unwrap_or_else(|| model.stick(median, least));
         *radius = model.radius(*radius, stick);
         if bonded[row].unwrap_or(model.draws_bonds()) {
             particles.stick_radii[row] = stick;
@@ -134,7 +143,8 @@ impl Particles {
     /// Returns the bonds as sticks with the colors of both ends, and trails and the shafts of arrows; `materials` are those of the
     /// scene, and `rows` the row there of each material of the particles.
     ///
-    /// A bond that crosses the cell becomes two halves, one at each end, and so does one between different materials.
+    /// A bond that crosses the cell becomes two halves, one at each end, and so does one between different materials. Halves of
+    /// bonds that leave what is drawn are sticks, too.
     /// Materials that sticks cannot have are replaced by the first one.
     pub(in crate::scene) fn sticks(&self, materials: &[NamedMaterial], rows: &[u32]) -> Sticks {
         let mut sticks = Sticks::default();
@@ -150,6 +160,11 @@ impl Particles {
         let Some(bonds) = self.frame.bonds.as_ref().filter(|_| self.stick_radius > 0.0) else {
             return sticks;
         };
+        for stub in &self.added.stubs {
+            let row = stub.row as usize;
+            let (at, color) = (self.spheres.center(row), self.spheres.color_of(row));
+            sticks.push([at, at + stub.half], self.stick_radius, material(row), [color; 2]);
+        }
         for bond in 0..bonds.len() {
             let ends = [bonds.first[bond], bonds.second[bond]].map(|row| row as usize);
             let Some(radii) = self.stick_radii_of(ends) else { continue };
@@ -195,7 +210,12 @@ impl Particles {
 
     /// Returns the row of the material that a sphere's sticks and arrows have: the sphere's, or the first one if only spheres can
     /// have that.
-    fn solid_material(&self, sphere: usize, materials: &[NamedMaterial], rows: &[u32]) -> u32 {
+    pub(super) fn solid_material(
+        &self,
+        sphere: usize,
+        materials: &[NamedMaterial],
+        rows: &[u32],
+    ) -> u32 {
         let row = rows.get(self.spheres.material_of(sphere) as usize).copied().unwrap_or(0);
         let solid = materials.get(row as usize).is_none_or(|named| named.material.is_solid());
         if solid { row } else { 0 }
@@ -257,6 +277,22 @@ mod tests {
         assert_eq!(x, [[1.0, 3.0], [1.0, 0.0], [9.0, 10.0]]);
         assert_eq!(sticks.colors, [[Rgb::X, Rgb::Y], [Rgb::X; 2], [Rgb::Z; 2]]);
         assert!(sticks.radius.iter().all(|radius| (radius - 0.08).abs() < 1e-12));
+    }
+
+    #[test]
+    fn sticks_do_not_hide_the_smallest_balls() {
+        for (radii, stick) in [
+            ([1.7, 1.7, 1.2], 0.17),
+            ([0.76, 0.76, 0.31], 0.6 * 0.25 * 0.31),
+            ([1.0, 1.0, 1e-9], 0.025),
+        ] {
+            let mut own = particles();
+            own.spheres.radius = radii.into();
+            Model::BallAndStick.apply(&mut own, None);
+            assert!((own.stick_radius - stick).abs() < 1e-12, "{radii:?} {}", own.stick_radius);
+            Model::BallAndStick.apply(&mut own, Some(0.4));
+            assert_eq!(own.stick_radius, 0.4);
+        }
     }
 
     #[test]

@@ -11,7 +11,7 @@ use glam::{DQuat, DVec3};
 /// Names of the edges of a cell.
 const EDGES: [&str; 3] = ["a", "b", "c"];
 
-/// Reasons why particles cannot be wrapped or replicated.
+/// Reasons why particles cannot be wrapped, replicated or completed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PeriodicError {
@@ -19,8 +19,8 @@ pub enum PeriodicError {
     #[error("cannot {0} particles: the file has no cell")]
     NoCell(&'static str),
     /// No edge is periodic.
-    #[error("cannot wrap particles: the cell is not periodic along any of its edges")]
-    NotPeriodic,
+    #[error("cannot {0} particles: the cell is not periodic along any of its edges")]
+    NotPeriodic(&'static str),
     /// More than one copy along an edge that is not periodic.
     #[error("the cell is not periodic along its edge {0}: cannot make {1} copies along it")]
     Edge(&'static str, u32),
@@ -33,6 +33,12 @@ pub enum PeriodicError {
     /// More spheres than memory holds.
     #[error("{0} copies make {1} spheres, which need {2}")]
     Memory(u64, u64, Shortage),
+    /// More spheres with images at the boundary than a scene may hold.
+    #[error("images at the boundary of the cell make {0} spheres, but a scene holds at most {max}", max = Spheres::MAX)]
+    TooManyImages(u64),
+    /// More spheres with images at the boundary than memory holds.
+    #[error("images at the boundary of the cell make {0} spheres, which need {1}")]
+    MemoryOfImages(u64, Shortage),
 }
 
 impl Particles {
@@ -43,7 +49,7 @@ impl Particles {
     pub fn wrap(&mut self) -> Result<(), PeriodicError> {
         let cell = self.frame.cell.ok_or(PeriodicError::NoCell("wrap"))?;
         if cell.periodic == [false; 3] {
-            return Err(PeriodicError::NotPeriodic);
+            return Err(PeriodicError::NotPeriodic("wrap"));
         }
         let inverse = cell.matrix().inverse();
         let mut moves = vec![[0; 3]; self.frame.bonds.as_ref().map_or(0, |_| self.spheres.len())];
@@ -121,7 +127,7 @@ impl Particles {
     }
 
     /// Returns the bytes of a row in all columns.
-    fn row_bytes(&self) -> u64 {
+    pub(super) fn row_bytes(&self) -> u64 {
         let spheres = &self.spheres;
         let texts = self.frame.texts.iter().map(|column| &column.codes);
         let codes = texts.chain([&self.frame.kinds.codes]).filter(|codes| !codes.is_empty());
@@ -315,7 +321,7 @@ mod tests {
         assert!(matches!(memory, Err(PeriodicError::Memory(..))), "{memory:?}");
         assert_eq!(particles, before);
         particles.frame.cell = Some(Cell { periodic: [false; 3], ..tilted() });
-        assert_eq!(particles.wrap(), Err(PeriodicError::NotPeriodic));
+        assert_eq!(particles.wrap(), Err(PeriodicError::NotPeriodic("wrap")));
         particles.frame.cell = None;
         assert_eq!(particles.wrap(), Err(PeriodicError::NoCell("wrap")));
         assert_eq!(particles.replicate([1; 3]), Err(PeriodicError::NoCell("replicate")));

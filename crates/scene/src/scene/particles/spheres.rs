@@ -1,5 +1,6 @@
 //! Conversion of particle frames to spheres: finds radii and colors, and drops invalid rows.
 
+use super::boundary::AddedBodies;
 use super::radii::{FoundRadii, apply_expression, half_spacing, radii};
 use super::style::{Arrows, Column, ElementColors, ID, INDEX, TypeMaterial};
 use super::{Cell, FirstFrame, Orientation, ParticleFrame, ReadOptions, TextColumn};
@@ -36,6 +37,12 @@ pub struct Particles {
     pub first_frame: Option<FirstFrame>,
     /// The orientation of all particles, before a style dropped some or changed their radii.
     pub orientation: Option<Orientation>,
+    /// True if the cell of the file is that of a small crystal ([`ParticleFrame::has_crystal_cell`]).
+    pub has_crystal_cell: bool,
+    /// True if the file is that of a crystal ([`ParticleFrame::is_crystal`]).
+    pub is_crystal: bool,
+    /// Bodies that the boundary of the cell and polyhedra add, made when all rows are final ([`Particles::draw_boundary`]).
+    pub added: AddedBodies,
 }
 
 impl Particles {
@@ -104,6 +111,7 @@ pub(super) fn spheres(
     }
     memory::check(bytes_to_add(&frame))
         .map_err(|shortage| FileError::whole_file(path, format!("its spheres need {shortage}")))?;
+    let (has_crystal_cell, is_crystal) = (frame.has_crystal_cell(), frame.is_crystal());
     if options.scale != 1.0 {
         let columns = [&mut frame.x, &mut frame.y, &mut frame.z];
         columns.into_iter().flatten().for_each(|value| *value *= options.scale);
@@ -141,6 +149,7 @@ pub(super) fn spheres(
     frame.warnings = warnings.list;
     let mut particles = Particles { spheres, frame, material_names, ..Particles::default() };
     (particles.guessed_radius, particles.first_frame) = (guessed_radius, first_frame);
+    (particles.has_crystal_cell, particles.is_crystal) = (has_crystal_cell, is_crystal);
     apply_expression(path, &mut particles, options)?;
     Ok(particles)
 }

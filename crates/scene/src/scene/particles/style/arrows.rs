@@ -247,6 +247,14 @@ pub(in super::super) struct Arrow {
 }
 
 impl Arrows {
+    /// Appends copies of rows.
+    pub(in super::super) fn append_rows(&mut self, rows: &[u32]) {
+        if !self.vectors.is_empty() {
+            let copies: Vec<DVec3> = rows.iter().map(|&row| self.vectors[row as usize]).collect();
+            self.vectors.extend(copies);
+        }
+    }
+
     /// Returns the parts of the arrow of a sphere; `None` if it has none.
     pub(in super::super) fn of(&self, row: usize, center: DVec3) -> Option<Arrow> {
         let vector = *self.vectors.get(row)?;

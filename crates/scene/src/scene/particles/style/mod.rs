@@ -29,7 +29,7 @@ pub use types::{TypeMaterial, TypeStyle};
 
 use super::NumberColumn;
 use super::select::{Selection, expression};
-use super::{BondSource, Model, Orientation, Particles, SharedNames};
+use super::{BondSource, Model, Orientation, Particles, Polyhedra, SharedNames};
 use crate::scene::{FileError, Rgb};
 use spherule_particles::internals::aliases;
 use std::path::Path;
@@ -57,13 +57,15 @@ pub struct ParticleStyle {
     pub select: Option<Selection>,
     /// Source of colors.
     pub coloring: Coloring,
-    /// The way in which particles and bonds are drawn; `None` for balls and sticks if `bonds` are asked for and for
-    /// crystals, and else for spheres.
+    /// The way in which particles and bonds are drawn; `None` for balls and sticks if `bonds` or `polyhedra` are asked for and
+    /// for crystals, and else for spheres.
     pub model: Option<Model>,
     /// Source of bonds; `None` for those that the model needs.
     pub bonds: Option<BondSource>,
     /// Radius of the sticks of bonds; `None` for the model's usual one.
     pub bond_radius: Option<f64>,
+    /// Coordination polyhedra.
+    pub polyhedra: Polyhedra,
     /// Opacity of the particles that `translucent` selects; `None` for [`GHOST`] if there is a selection, and else for opaque
     /// particles.
     pub opacity: Option<Opacity>,
@@ -98,6 +100,7 @@ impl ParticleStyle {
             (Some(source), _) => source.clone(),
             (None, Some(model)) if model.draws_bonds() => BondSource::Auto,
             (None, _) if self.properties().any(Properties::draws_bonds) => BondSource::Auto,
+            _ if self.polyhedra.need_bonds() => BondSource::Auto,
             (None, Some(_)) => BondSource::None,
             (None, None) => BondSource::OfCrystals,
         }
@@ -106,7 +109,8 @@ impl ParticleStyle {
     /// Returns whether particles are drawn as a crystal because nothing else is asked for: as balls and sticks in their
     /// cell.
     pub fn draws_crystal(&self, particles: &Particles) -> bool {
-        self.bond_source() == BondSource::OfCrystals && particles.frame.bonds.is_some()
+        let is_chosen = self.model.is_some() || self.bonds.is_some();
+        !is_chosen && particles.is_crystal && particles.frame.bonds.is_some()
     }
 
     /// The properties of types and of selections.
@@ -217,8 +221,8 @@ impl ParticleStyle {
             particles.frame.warnings.push(warning);
         }
         let asks_for_bonds = self.bonds.is_some() || self.draws_crystal(particles);
-        let usual =
-            if has_bonds && asks_for_bonds { Model::BallAndStick } else { Model::SpaceFilling };
+        let has_balls = has_bonds && asks_for_bonds || !self.polyhedra.is_empty();
+        let usual = if has_balls { Model::BallAndStick } else { Model::SpaceFilling };
         let base = self.model.unwrap_or(usual);
         selected::shape(&assigned, particles, base, self.bond_radius);
         selected::set_materials(&assigned, particles);

@@ -1,0 +1,249 @@
+//! Particles at the boundary of a periodic cell: the cell is completed with the images of particles on its faces, and bonds that
+//! leave it end at images, in the middle, or are not drawn.
+
+use super::polyhedra::{Coordination, Polyhedron};
+use super::{Particles, PeriodicError};
+use crate::memory;
+use crate::scene::Spheres;
+use glam::{DMat3, DVec3};
+use spherule_particles::Format;
+use spherule_particles::images::{Images, LeavingBond};
+use spherule_particles::neighbors::Points;
+
+/// The treatment of bonds that leave the cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outside {
+    /// The particles at their other ends are drawn, too.
+    Whole,
+    /// They are not drawn.
+    None,
+    /// Their halves inside are drawn.
+    Halves,
+}
+
+impl Outside {
+    /// All treatments, with their names in options.
+    pub const ALL: [(&'static str, Self); 3] =
+        [("whole", Self::Whole), ("none", Self::None), ("halves", Self::Halves)];
+
+    /// Returns the name in options.
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(_, own)| *own == self).map_or("", |(name, _)| name)
+    }
+}
+
+/// The part of a periodic structure that is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Boundary {
+    /// True if particles on faces, edges and corners of the cell are drawn on the opposite ones, too; `None` for
+    /// [crystals](Particles::completes_cell).
+    pub complete: Option<bool>,
+    /// The treatment of bonds that leave the cell; `None` for none in a completed cell, and else for halves.
+    pub outside: Option<Outside>,
+}
+
+/// Bodies that the boundary of the cell and polyhedra add to those of particles.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct AddedBodies {
+    /// Halves of bonds that leave what is drawn.
+    pub(super) stubs: Vec<Stub>,
+    pub(super) polyhedra: Vec<Polyhedron>,
+    /// Opacity of their faces, if one is given.
+    pub(super) face_opacity: Option<f64>,
+}
+
+/// The half of a bond that leaves what is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stub {
+    /// The particle at its end.
+    pub(super) row: u32,
+    /// The vector from there to the middle of the bond.
+    pub(super) half: DVec3,
+}
+
+impl Particles {
+    /// Returns whether the cell is completed if nothing else is asked for: that of a small crystal
+    /// ([`ParticleFrame::has_crystal_cell`](super::ParticleFrame::has_crystal_cell)), if the file has no other frames, between which
+    /// particles would come and go.
+    pub fn completes_cell(&self) -> bool {
+        self.has_crystal_cell && (self.first_frame.is_none() || self.frame.format == Format::Cif)
+    }
+
+    /// Draws the boundary of the cell: appends the images that are asked for, with all columns of their particles, and changes the
+    /// bonds to those between what is drawn. Polyhedra become those of all centers in the cell; their corners are drawn, too, unless
+    /// nothing outside is to be drawn: then those with other corners are left out.
+    ///
+    /// # Errors
+    /// There is no cell to complete, or there would be too many spheres; then nothing has changed.
+    pub fn draw_boundary(
+        &mut self,
+        boundary: Boundary,
+        coordinations: &[Coordination],
+    ) -> Result<(), PeriodicError> {
+        let Boundary { complete, outside } = boundary;
+        if complete == Some(true) {
+            let cell = self.frame.cell.ok_or(PeriodicError::NoCell("complete"))?;
+            if cell.periodic == [false; 3] {
+                return Err(PeriodicError::NotPeriodic("complete"));
+            }
+        }
+        let completes = complete.unwrap_or_else(|| self.completes_cell());
+        let usual = if completes { Outside::None } else { Outside::Halves };
+        let leaving = outside.unwrap_or(usual);
+        let count = self.spheres.len();
+        let mut images =
+            if completes { Images::on_faces(self.points()) } else { Images::default() };
+        let in_cell = count + images.len();
+        let centers: Vec<(&Coordination, [i32; 3], u32)> = images
+            .nodes(count)
+            .take(in_cell)
+            .enumerate()
+            .filter_map(|(place, (row, shift))| {
+                let found = coordinations.binary_search_by_key(&row, |own| own.center).ok()?;
+                Some((&coordinations[found], shift, place as u32))
+            })
+            .collect();
+        if outside != Some(Outside::None) {
+            for (coordination, shift, _) in &centers {
+                coordination.corners(*shift).for_each(|(row, shift)| images.add(row, shift));
+            }
+        }
+        if let (Outside::Whole, Some(bonds)) = (leaving, &self.frame.bonds) {
+            images.add_bonded(count, in_cell, bonds);
+        }
+        self.check_images(&images)?;
+        let row = |(row, shift): (u32, [i32; 3])| images.row_of(count, row, shift);
+        let drawn = centers.iter().filter_map(|(coordination, shift, place)| {
+            let corners = coordination.corners(*shift).map(row).collect::<Option<Vec<u32>>>()?;
+            Some(Polyhedron::new(*place, &corners, &coordination.hull))
+        });
+        self.added.polyhedra = drawn.collect();
+        if images.is_empty() && leaving == Outside::Halves {
+            return Ok(());
+        }
+        let bonds = self.frame.bonds.as_mut();
+        let ends = bonds.map_or_else(Vec::new, |bonds| bonds.between(count, &images));
+        self.append(&images);
+        if leaving == Outside::Halves {
+            self.added.stubs = ends.iter().map(|end| self.stub(*end)).collect();
+        }
+        Ok(())
+    }
+
+    /// Returns the centers, and the cell.
+    pub(super) fn points(&self) -> Points<'_> {
+        let Spheres { x, y, z, .. } = &self.spheres;
+        Points { axes: [x, y, z], cell: self.frame.cell.as_ref() }
+    }
+
+    /// Returns an error if there are too many images.
+    fn check_images(&self, images: &Images) -> Result<(), PeriodicError> {
+        let (count, more) = (self.spheres.len() as u64, images.len() as u64);
+        if count + more > Spheres::MAX {
+            return Err(PeriodicError::TooManyImages(count + more));
+        }
+        // Columns are gathered before they are dropped.
+        memory::check(more * self.row_bytes() + count * size_of::<f64>() as u64)
+            .map_err(|shortage| PeriodicError::MemoryOfImages(count + more, shortage))
+    }
+
+    /// Appends images, with all columns but bonds.
+    fn append(&mut self, images: &Images) {
+        let count = self.spheres.len();
+        let matrix = self.frame.cell.map_or(DMat3::IDENTITY, |cell| cell.matrix());
+        for (&row, shift) in images.rows.iter().zip(&images.shifts) {
+            let (spheres, row) = (&mut self.spheres, row as usize);
+            let center = spheres.center(row) + matrix * DVec3::from(shift.map(f64::from));
+            let (radius, color) = (spheres.radius[row], spheres.color_of(row));
+            spheres.push(center, radius, spheres.material_of(row), color);
+        }
+        self.frame.append_rows(count, &images.rows);
+        self.arrows.append_rows(&images.rows);
+    }
+
+    fn stub(&self, LeavingBond { row, other, shift }: LeavingBond) -> Stub {
+        let matrix = self.frame.cell.map_or(DMat3::IDENTITY, |cell| cell.matrix());
+        let end = self.spheres.center(other as usize) + matrix * DVec3::from(shift.map(f64::from));
+        Stub { row, half: (end - self.spheres.center(row as usize)) / 2.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::particles::{Bonds, Cell, NumberColumn};
+    use crate::scene::{Rgb, Scene};
+
+    /// A particle on a corner of the cell, one on a face and one inside, and bonds from the first to the others and over the cell.
+    fn particles() -> Particles {
+        let mut particles = Particles { has_crystal_cell: true, ..Particles::default() };
+        let vectors = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * 4.0);
+        particles.frame.cell = Some(Cell { origin: DVec3::ZERO, vectors, periodic: [true; 3] });
+        for (at, color) in [([0.0; 3], Rgb::X), ([2.0, 0.0, 2.0], Rgb::Y), ([2.0; 3], Rgb::Z)] {
+            particles.spheres.push(at.into(), 0.5, 0, color);
+        }
+        let shift = vec![[0; 3], [-1, 0, 0], [0; 3]];
+        let (first, second) = (vec![0, 0, 1], vec![1, 1, 2]);
+        particles.frame.bonds = Some(Bonds { first, second, shift, ..Bonds::default() });
+        particles.stick_radius = 0.1;
+        let values = vec![5.0, 6.0, 7.0];
+        particles.frame.numbers.push(NumberColumn { name: "q".to_owned(), values });
+        particles
+    }
+
+    fn drawn(complete: Option<bool>, outside: Option<Outside>) -> (Particles, usize, usize) {
+        let mut own = particles();
+        own.draw_boundary(Boundary { complete, outside }, &[]).unwrap();
+        let scene = Scene::of_particles(own.clone(), "");
+        (own, scene.spheres.len(), scene.sticks.len())
+    }
+
+    #[test]
+    fn cells_of_crystals_are_completed() {
+        let (own, spheres, sticks) = drawn(None, None);
+        // Eight corners, two faces, and what is inside; each face has a stick to two of its corners or to the inside.
+        assert_eq!((spheres, sticks), (11, 5));
+        assert_eq!(own.frame.numbers[0].values.iter().filter(|value| **value == 5.0).count(), 8);
+        for row in 0..11 {
+            let first = (own.frame.numbers[0].values[row] - 5.0) as usize;
+            let moved = (own.spheres.center(row) - particles().spheres.center(first)) / 4.0;
+            assert!(moved == moved.round() && moved.abs().max_element() <= 1.0, "{moved}");
+            assert_eq!(own.spheres.color_of(row), particles().spheres.color_of(first));
+        }
+        let mut movie = particles();
+        movie.has_crystal_cell = false;
+        movie.draw_boundary(Boundary::default(), &[]).unwrap();
+        assert_eq!(movie.spheres.len(), 3);
+    }
+
+    #[test]
+    fn bonds_that_leave_end_at_particles_or_halfway_or_are_not_drawn() {
+        use Outside::{Halves, None, Whole};
+        for (complete, outside, expected) in [
+            (false, Option::None, (3, 4)),
+            (false, Some(Halves), (3, 4)),
+            (false, Some(None), (3, 2)),
+            (false, Some(Whole), (5, 4)),
+            (true, Some(None), (11, 5)),
+            (true, Some(Halves), (11, 5 + 13)),
+        ] {
+            let (_, spheres, sticks) = drawn(Some(complete), outside);
+            assert_eq!((spheres, sticks), expected, "{complete} {outside:?}");
+        }
+        let (whole, ..) = drawn(Some(true), Some(Whole));
+        assert!(whole.added.stubs.is_empty() && whole.spheres.len() > 11);
+        let (halves, ..) = drawn(Some(true), Some(Halves));
+        let length = |stub: &Stub| stub.half.length_squared();
+        assert!(halves.added.stubs.iter().all(|stub| [1.0, 2.0].contains(&length(stub))));
+    }
+
+    #[test]
+    fn cells_that_cannot_be_completed_are_refused() {
+        let complete = Boundary { complete: Some(true), outside: None };
+        let mut own = particles();
+        own.frame.cell.as_mut().unwrap().periodic = [false; 3];
+        assert_eq!(own.draw_boundary(complete, &[]), Err(PeriodicError::NotPeriodic("complete")));
+        own.frame.cell = None;
+        assert_eq!(own.draw_boundary(complete, &[]), Err(PeriodicError::NoCell("complete")));
+    }
+}
