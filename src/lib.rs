@@ -117,10 +117,10 @@ pub mod scene {
     pub mod particles {
         #[doc(inline)]
         pub use spherule_render::scene::particles::{
-            Applied, ArrowCentering, ArrowSizes, ArrowStyle, Arrows, BondRules, BondSource, Bonds,
-            Cell, ColorEnd, ColorEnds, Coloring, ColumnColors, ColumnSummary, ElementColors,
-            FirstFrame, Legend, Model, NumberColors, Opacity, Orientation, ParticleStyle,
-            Particles, PeriodicError, Properties, SelectedStyle, Selection, Shapes, SharedColors,
+            AddedBodies, Applied, ArrowCentering, ArrowSizes, ArrowStyle, Arrows, BondRules, BondSource, Bonds,
+            Boundary, Cell, ColorEnd, ColorEnds, Coloring, ColumnColors, ColumnSummary, Coordination, ElementColors,
+            FirstFrame, Legend, Model, NumberColors, Opacity, Orientation, Outside, ParticleStyle,
+            Particles, PeriodicError, Polyhedra, Properties, SelectedStyle, Selection, Shapes, SharedColors,
             Trails, TrajectoryReader, TypeMaterial, TypeStyle, UpReason, VectorColumns,
             accept_radii_expression, of_frame, of_frame_in, read,
         };

@@ -49,7 +49,9 @@ impl Images {
             };
             for &a in steps(0) {
                 for &b in steps(1) {
-                    steps(2).iter().for_each(|&c| images.add(row as u32, [a, b, c]));
+                    for &c in steps(2) {
+                        images.add(row as u32, [a, b, c]);
+                    }
                 }
             }
         }

@@ -120,7 +120,9 @@ impl Polyhedra {
             let rows = |table: &[bool]| -> Vec<u32> {
                 (0..count as u32).filter(|&row| has(table, row)).collect()
             };
-            rows(&centers).into_iter().for_each(|row| is_center[row as usize] = true);
+            for row in rows(&centers) {
+                is_center[row as usize] = true;
+            }
             if let Some(length) = rule.length {
                 let corners = rows(&corners);
                 let list = CellList::new(particles.points(), &corners, length).map_err(fault)?;
