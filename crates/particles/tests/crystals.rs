@@ -2,6 +2,7 @@
 
 use spherule_particles::{BondSource, ParticleFrame, ReadOptions, read_frame};
 use std::collections::BTreeMap;
+use std::fmt::Write;
 
 fn read(content: &str) -> ParticleFrame {
     let folder = tempfile::tempdir().expect("a folder");
@@ -123,10 +124,10 @@ fn metals_without_anions_between_them_are_bonded() {
     let mut copper = "18\n\nCu 0 0 1.31\nCu 0 0 -1.31\n".to_owned();
     for (x, y) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)] {
         let [near, far] = [1.38, 1.8].map(|at| [at * x, at * y]);
-        copper += &format!("C {} {} 0\n", far[0], far[1]);
+        writeln!(copper, "C {} {} 0", far[0], far[1]).expect("a row");
         for z in [1.12, -1.12] {
-            rhenium += &format!("Cl {} {} {}\n", 1.6 * x, 1.6 * y, 1.5 * z);
-            copper += &format!("O {} {} {z}\n", near[0], near[1]);
+            writeln!(rhenium, "Cl {} {} {}", 1.6 * x, 1.6 * y, 1.5 * z).expect("a row");
+            writeln!(copper, "O {} {} {z}", near[0], near[1]).expect("a row");
         }
     }
     copper = copper.replacen("18", "14", 1);
@@ -142,12 +143,12 @@ fn clusters_of_frameworks_have_no_bonds_of_metals() {
         for sign in [2.5, -2.5] {
             let mut at = [0.0; 3];
             at[axis] = sign;
-            node += &format!("Zr {} {} {}\n", at[0], at[1], at[2]);
+            writeln!(node, "Zr {} {} {}", at[0], at[1], at[2]).expect("a row");
         }
     }
     for corner in 0..8 {
         let at = [0, 1, 2].map(|axis| if corner >> axis & 1 == 0 { 1.27 } else { -1.27 });
-        node += &format!("O {} {} {}\n", at[0], at[1], at[2]);
+        writeln!(node, "O {} {} {}", at[0], at[1], at[2]).expect("a row");
     }
     assert_eq!(bonds(&node), "O-Zr 24");
     // A carboxylate that chelates zinc, whose carbon is within the radii.

@@ -8,7 +8,9 @@ fn perovskite() -> Particles {
     let vectors = DVec3::AXES.map(|axis| axis * 4.0);
     particles.frame.cell = Some(Cell { origin: DVec3::ZERO, vectors, periodic: [true; 3] });
     particles.spheres.push(DVec3::ZERO, 0.5, 0, Rgb::X);
-    DVec3::AXES.iter().for_each(|axis| particles.spheres.push(*axis * 2.0, 0.4, 0, Rgb::Y));
+    for axis in DVec3::AXES {
+        particles.spheres.push(axis * 2.0, 0.4, 0, Rgb::Y);
+    }
     for name in ["Ti", "O"] {
         let element = Element::from_symbol(name);
         let name = format!("{name}1");
