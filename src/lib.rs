@@ -117,12 +117,13 @@ pub mod scene {
     pub mod particles {
         #[doc(inline)]
         pub use spherule_render::scene::particles::{
-            AddedBodies, Applied, ArrowCentering, ArrowSizes, ArrowStyle, Arrows, BondRules, BondSource, Bonds,
-            Boundary, Cell, ColorEnd, ColorEnds, Coloring, ColumnColors, ColumnSummary, Coordination, ElementColors,
-            FirstFrame, Legend, Model, NumberColors, Opacity, Orientation, Outside, ParticleStyle,
-            Particles, PeriodicError, Polyhedra, Properties, SelectedStyle, Selection, Shapes, SharedColors,
-            Trails, TrajectoryReader, TypeMaterial, TypeStyle, UpReason, VectorColumns,
-            accept_radii_expression, of_frame, of_frame_in, read,
+            AddedBodies, Applied, ArrowCentering, ArrowSizes, ArrowStyle, Arrows, BondRules,
+            BondSource, Bonds, Boundary, Cell, ColorEnd, ColorEnds, Coloring, ColumnColors,
+            ColumnSummary, Coordination, ElementColors, FirstFrame, Legend, Model, NumberColors,
+            Opacity, Orientation, Outside, ParticleStyle, Particles, PeriodicError, Polyhedra,
+            Properties, SelectedStyle, Selection, Shapes, SharedColors, Trails, TrajectoryReader,
+            TypeMaterial, TypeStyle, UpReason, VectorColumns, accept_radii_expression, of_frame,
+            of_frame_in, read,
         };
     }
 }

@@ -13,8 +13,8 @@ use spherule::particles::{
 };
 use spherule::scene::particles::{
     ArrowCentering, ArrowStyle, BondSource, ColorEnds, Coloring, ColumnColors, ElementColors,
-    Model, Opacity, ParticleStyle, Polyhedra, Properties, SelectedStyle, Selection, TypeMaterial, TypeStyle,
-    accept_radii_expression,
+    Model, Opacity, ParticleStyle, Polyhedra, Properties, SelectedStyle, Selection, TypeMaterial,
+    TypeStyle, accept_radii_expression,
 };
 use std::str::FromStr;
 

@@ -8,8 +8,8 @@ use spherule_render::color::{self, Map, Spacing};
 use spherule_render::graphics::Format;
 use spherule_render::scene::particles::{
     ArrowCentering, ArrowStyle, BondSource, ColorEnds, Coloring, ColumnColors, ElementColors,
-    Legend, Model, NumberColors, Opacity, ParticleStyle, Polyhedra, SelectedStyle, Selection, TypeStyle,
-    VectorColumns,
+    Legend, Model, NumberColors, Opacity, ParticleStyle, Polyhedra, SelectedStyle, Selection,
+    TypeStyle, VectorColumns,
 };
 use spherule_render::scene::{Anchor, Rgb};
 use spherule_render::suggest;

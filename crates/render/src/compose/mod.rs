@@ -26,8 +26,8 @@ pub use self::template::{Template, Value};
 
 use self::annotations::Facts;
 use crate::scene::particles::{
-    Applied, ArrowSizes, Boundary, Category, Cell, Kinds, Legend, NumberColumn, Orientation, ParticleStyle,
-    Particles, PeriodicError, Shapes, TextColumn, UpReason,
+    Applied, ArrowSizes, Boundary, Category, Cell, Kinds, Legend, NumberColumn, Orientation,
+    ParticleStyle, Particles, PeriodicError, Shapes, TextColumn, UpReason,
 };
 use crate::scene::{Axis, Background, Camera, FileError, Preset, Scene, SliceMode, SlicePlane};
 use crate::settings;

@@ -156,6 +156,9 @@ impl Particles {
             let center = spheres.center(row) + matrix * DVec3::from(shift.map(f64::from));
             let (radius, color) = (spheres.radius[row], spheres.color_of(row));
             spheres.push(center, radius, spheres.material_of(row), color);
+            if let Some(stick) = self.stick_radii.get(row).copied() {
+                self.stick_radii.push(stick);
+            }
         }
         self.frame.append_rows(count, &images.rows);
         self.arrows.append_rows(&images.rows);

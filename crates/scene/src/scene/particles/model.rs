@@ -163,7 +163,10 @@ impl Particles {
         for stub in &self.added.stubs {
             let row = stub.row as usize;
             let (at, color) = (self.spheres.center(row), self.spheres.color_of(row));
-            sticks.push([at, at + stub.half], self.stick_radius, material(row), [color; 2]);
+            let radius = self.stick_radii.get(row).copied().unwrap_or(self.stick_radius);
+            if radius > 0.0 {
+                sticks.push([at, at + stub.half], radius, material(row), [color; 2]);
+            }
         }
         for bond in 0..bonds.len() {
             let ends = [bonds.first[bond], bonds.second[bond]].map(|row| row as usize);
@@ -288,9 +291,9 @@ mod tests {
         ] {
             let mut own = particles();
             own.spheres.radius = radii.into();
-            Model::BallAndStick.apply(&mut own, None);
+            apply(&mut own, Model::BallAndStick, None, &[]);
             assert!((own.stick_radius - stick).abs() < 1e-12, "{radii:?} {}", own.stick_radius);
-            Model::BallAndStick.apply(&mut own, Some(0.4));
+            apply(&mut own, Model::BallAndStick, Some(0.4), &[]);
             assert_eq!(own.stick_radius, 0.4);
         }
     }
