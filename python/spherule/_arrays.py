@@ -226,6 +226,30 @@ def coded(name: str, value: Any, count: int) -> tuple[list[str], npt.NDArray[np.
     return list(known), codes
 
 
+#: The colors "C0" to "C9" of matplotlib, and its names for them after "tab:".
+_CYCLE = {
+    "blue": "#1f77b4",
+    "orange": "#ff7f0e",
+    "green": "#2ca02c",
+    "red": "#d62728",
+    "purple": "#9467bd",
+    "brown": "#8c564b",
+    "pink": "#e377c2",
+    "gray": "#7f7f7f",
+    "olive": "#bcbd22",
+    "cyan": "#17becf",
+}
+
+
+def _color_of(word: str) -> Any:
+    """The linear color of a CSS name, of #rrggbb, or of a name of matplotlib; None if it is none."""
+    from . import _native
+
+    if word[:1] == "C" and word[1:].isascii() and word[1:].isdigit():
+        word = list(_CYCLE.values())[int(word[1:]) % len(_CYCLE)]
+    return _native.color_of(_CYCLE.get(word.removeprefix("tab:"), word) if word.startswith("tab:") else word)
+
+
 def colors(name: str, value: Any, count: int) -> npt.NDArray[Any]:
     """Linear colors of all particles, from a name, `#rrggbb`, one triple, or a row for each."""
     import numpy as np
@@ -233,7 +257,7 @@ def colors(name: str, value: Any, count: int) -> npt.NDArray[Any]:
     from . import _native
 
     if isinstance(value, str):
-        found = _native.color_of(value)
+        found = _color_of(value)
         if found is None:
             raise Error(
                 f"`{name}` is {value!r}, but must be a CSS color, #rrggbb, or an array of linear RGB from 0 to 1"
@@ -244,7 +268,7 @@ def colors(name: str, value: Any, count: int) -> npt.NDArray[Any]:
         names, codes = coded(name, value, count)
         rows = []
         for row, word in enumerate(names):
-            found = _native.color_of(word)
+            found = _color_of(word)
             if found is None:
                 raise Error(f"{name}[{int(np.argmax(codes == row))}] is {word!r}, but must be a CSS color or #rrggbb")
             rows.append(found)

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import difflib
+import inspect
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
-from .sections import Sections
+from .sections import LayerName, Sections
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from typing import Literal
 
     from ._native import Stop
     from .sections import (
@@ -17,7 +19,6 @@ if TYPE_CHECKING:
         Color,
         ColorBar,
         ColorMap,
-        LayerName,
         Model,
         Outside,
         Position,
@@ -88,7 +89,7 @@ if TYPE_CHECKING:
     class RenderOptions(Render, total=False):
         """Keyword arguments of renders."""
 
-        layers: Sequence[LayerName]
+        layers: Literal["all"] | Sequence[LayerName]
         threads: int
         progress: bool | Callable[[float, int, float, float | None], object]
         stop: Stop
@@ -118,6 +119,9 @@ RENDER = frozenset(
     "filter roulette dpi exposure tone".split()
 )
 
+#: Names of all layers.
+LAYERS = get_args(LayerName)
+
 #: Other arguments of renders.
 RUN = frozenset("layers threads progress stop on_interrupt".split())
 
@@ -131,6 +135,16 @@ def check(given: Iterable[str], *known: frozenset[str]) -> None:
             raise TypeError(f"unknown argument `{name}`" + (f"; did you mean `{near[0]}`?" if near else ""))
 
 
+def signed(thing: Any, *known: frozenset[str]) -> None:
+    """Gives a function or a class, which takes any keywords, a signature with these, so that completion shows them."""
+    own = inspect.signature(thing)
+    fixed = [one for one in own.parameters.values() if one.kind != one.VAR_KEYWORD]
+    taken = {one.name for one in fixed}
+    names = sorted(frozenset().union(*known) - taken)
+    keywords = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None) for name in names]
+    thing.__signature__ = own.replace(parameters=[*fixed, *keywords])
+
+
 def part(given: Mapping[str, Any], names: frozenset[str]) -> dict[str, Any]:
     """The arguments with these names that are not None."""
     return {name: value for name, value in given.items() if name in names and value is not None}
@@ -141,7 +155,8 @@ def render_table(given: Mapping[str, Any]) -> dict[str, Any]:
     from . import _toml, _values
 
     text, keys = _toml.document({"render": part(given, RENDER)})
-    layers = _values.items("layers", given.get("layers", ()), _values.text)
+    layers = given.get("layers", ())
+    layers = LAYERS if isinstance(layers, str) and layers == "all" else _values.items("layers", layers, _values.text)
     return {"text": text, "keys": keys.get("render", []), "layers": layers, "threads": threads(given.get("threads"))}
 
 

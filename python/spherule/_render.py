@@ -73,7 +73,7 @@ def render(source: Any = None, **options: Unpack[AllOptions]) -> Picture:
             denoise: ``"auto"``: unless samples or an error are chosen; ``"on"`` or ``"off"``.
             seed, depth, integrator, sampler, filter, roulette, light_choice, shadow_samples, ao_distance, caustics,
             exposure, tone: As in the section ``[render]`` of scene files.
-            layers: Names of layers to render: see :class:`Picture`.
+            layers: Names of layers to render, or ``"all"``: see :class:`Picture`.
             threads: How many threads; by default as many as the process may use.
             progress: True or False, or a function of the fraction done, rays, seconds and error; by default a bar in
                 terminals and notebooks, by tqdm if it is there.
@@ -168,3 +168,9 @@ async def render_async(source: Any = None, **options: Unpack[AllOptions]) -> Pic
     except asyncio.CancelledError:
         stop.set()
         raise
+
+
+for _function in (render, refine, render_async):
+    _options.signed(
+        _function, _options.PARTICLES, _options.STYLE, _options.SECTIONS, _options.RENDER, _options.RUN
+    )

@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from . import _arrays, _options, _toml, _values
+from . import _arrays, _options, _toml, _values, friends
 from ._errors import Error, SpheruleWarning
 from ._particles import Particles, read
 
@@ -29,7 +29,8 @@ class Scene:
     sections alone.
 
     Args:
-        particles: :class:`Particles`, (n, 3) positions, a tuple of the columns x, y and z, or None.
+        particles: :class:`Particles`, (n, 3) positions, a tuple of the columns x, y and z, or None; or what ASE,
+            MDAnalysis, OVITO, GSD and pandas have (see :func:`spherule.from_ase` and its kin).
         radius: A number or (n,) numbers, more than 0, in the unit of the positions; or ``"vdw"``, ``"covalent"`` or
             ``"ionic"``, radii of elements; or ``"column:NAME"``, of which the name may be an expression as in
             ``"column:0.3 * mass^(1/3)"``. By default the particles' own, or those of elements, or half of the
@@ -93,7 +94,8 @@ class Scene:
             ``"halves"``; by default none in a completed cell, and else halves.
         slices: Planes that cut spheres away, as in ``["z > 50%"]``; ``slice_mode`` is ``"remove"``, ``"caps"`` or
             ``"hide"``.
-        render, look, label, lettering, environment, ground, slice, light, material,
+        label: A text or several, as in ``"top:{title}"``, or sections.
+        render, look, lettering, environment, ground, slice, light, material,
             sphere, stick, ellipsoid, cone, triangle, mesh, generate, file, style: Sections, as :mod:`spherule.sections` types
             them.
         triangles: (n, 3, 3) corners of triangles, such as the faces of a wall or of an isosurface; or a dict of these
@@ -125,6 +127,7 @@ class Scene:
             sections["color_bar"] = color_bar
             color_bar = None
         placed = {name: sections.pop(name) for name in _PLACED if not isinstance(sections.get(name, {}), Mapping)}
+        labels = _labels(sections)
         camera = None
         if "camera" in sections and not isinstance(sections["camera"], Mapping):
             camera = _values.path("camera", sections.pop("camera"))
@@ -143,7 +146,7 @@ class Scene:
                 {"text": text, "folder": os.getcwd(), "keys": keys, "triangles": triangles},
                 columns,
                 _style(given),
-                _view(given, {"color_bar": color_bar, **placed}, camera),
+                _view(given, {"color_bar": color_bar, **placed}, labels, camera),
             )
         )
 
@@ -178,9 +181,7 @@ class Scene:
         if not name.lower().endswith(".toml"):
             options.setdefault("title", os.path.basename(name))
             bonds = options.get("bonds")
-            texts = f"{options.get('select')} {options.get('color_by')}".lower()
-            counts = any(word in texts for word in ("coordination", "cluster"))
-            if bonds is None and (counts or options.get("model") not in (None, "space-filling")):
+            if bonds is None and _may_need_bonds(options):
                 bonds = "auto"
             return cls(read(name, bonds=None if bonds == "none" else bonds), **options)
         if options:
@@ -263,6 +264,9 @@ class Scene:
         return _restored, self._native.columns()
 
 
+_options.signed(Scene, _options.PARTICLES, _options.STYLE, _options.SECTIONS)
+
+
 def _restored(*columns: Any) -> Scene:
     """A scene from what its pickle holds. Buffers of pickles may lie anywhere, also between numbers."""
     import numpy as np
@@ -276,6 +280,14 @@ def _restored(*columns: Any) -> Scene:
     scene = Scene.__new__(Scene)
     scene._native = _native.Scene.of_columns(text, [aligned(column) for column in places], *map(aligned, others))
     return scene
+
+
+def _may_need_bonds(options: Mapping[str, Any]) -> bool:
+    """Whether bonds are drawn, or counted by a selection or an expression."""
+    texts = " ".join(repr(options.get(name)) for name in _options.STYLE).lower()
+    counts = any(word in texts for word in ("coordination", "cluster"))
+    draws = any(word in repr(options.get("styles")) for word in ("ball-and-stick", "licorice", "bonds"))
+    return counts or draws or options.get("model") not in (None, "space-filling")
 
 
 def _columns(particles: Any, given: dict[str, Any], sections: Mapping[str, Any]) -> dict[str, Any]:
@@ -293,6 +305,7 @@ def _columns(particles: Any, given: dict[str, Any], sections: Mapping[str, Any])
         radii, radius = repr(number), None
     own = _options.part(given, _options.PARTICLES)
     own.pop("radius", None)
+    particles = friends.particles_of(particles)
     over: dict[str, Any] = {}
     if isinstance(particles, Particles):
         over = {name: own.pop(name) for name in ("color", "materials") if name in own}
@@ -493,7 +506,19 @@ def _placed(name: str, value: Any, usual: str) -> str | None:
     return usual if _values.flag(name, value) else None
 
 
-def _view(given: Mapping[str, Any], annotations: Mapping[str, Any], camera: str | None) -> dict[str, Any]:
+def _labels(sections: dict[str, Any]) -> list[str]:
+    """Takes labels that are texts from the sections; dicts stay."""
+    labels = sections.get("label", ())
+    texts = [labels] if isinstance(labels, str) else labels
+    if not isinstance(texts, (list, tuple)) or not all(isinstance(text, str) for text in texts):
+        return []
+    sections.pop("label", None)
+    return list(texts)
+
+
+def _view(
+    given: Mapping[str, Any], annotations: Mapping[str, Any], labels: list[str], camera: str | None
+) -> dict[str, Any]:
     usual = {"color_bar": "bottom-right", **_PLACED}
     placed = {name: _placed(name, annotations.get(name), position) for name, position in usual.items()}
     flags = {name: _values.flag(name, given.get(name, False)) for name in ("wrap", "show_cell")}
@@ -508,4 +533,4 @@ def _view(given: Mapping[str, Any], annotations: Mapping[str, Any], camera: str 
         )
     words["complete"] = _optional(given, "complete", _values.flag)
     slices = _values.items("slices", given.get("slices", ()), _values.text)
-    return {**words, **numbers, **flags, "replicate": replicate, **placed, "slices": slices}
+    return {**words, **numbers, **flags, "replicate": replicate, **placed, "labels": labels, "slices": slices}

@@ -389,3 +389,19 @@ def _components(name: str, values: Any) -> dict[str, Any]:
     width = array.shape[1]
     parts = "xyz" if width == 3 else [str(part + 1) for part in range(width)]
     return {f"{name}_{part}": array[:, row] for row, part in enumerate(parts)}
+
+
+def particles_of(thing: Any) -> Any:
+    """The particles of an object of another package, by the attributes that only these have; anything else as it is."""
+    has = {name for name in ("get_chemical_symbols", "atoms", "trajectory", "particles", "iloc") if hasattr(thing, name)}
+    if isinstance(thing, Particles) or not has:
+        return thing
+    if "get_chemical_symbols" in has:
+        return from_ase(thing)
+    if "atoms" in has:
+        return from_mdanalysis(thing)
+    if "iloc" in has:
+        return from_pandas(thing)
+    if hasattr(thing.particles, "keys"):
+        return from_ovito(thing)
+    return from_gsd(thing) if hasattr(thing.particles, "position") else thing

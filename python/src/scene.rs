@@ -96,6 +96,7 @@ struct ViewTable {
     legend: Option<String>,
     axes: Option<String>,
     scale_bar: Option<String>,
+    labels: Vec<String>,
     slices: Vec<String>,
     slice_mode: Option<String>,
 }
@@ -146,6 +147,7 @@ impl From<compose::Fault> for Fault {
             compose::Fault::AxesOfCell => {
                 Self::Text("`axes` of the cell need particles with a `cell`".to_owned())
             }
+            compose::Fault::Label { row, why } => Self::Text(format!("label[{row}]: {why}")),
             // No argument asks for more.
             other => Self::Text(format!("{other:?}")),
         }
@@ -366,11 +368,16 @@ impl ViewTable {
             Anchor::named,
             &Anchor::ALL.map(|(name, _)| name),
         )?;
+        let labels =
+            self.labels.iter().enumerate().map(|(row, text)| {
+                text.parse().map_err(|why: String| format!("label[{row}]: {why}"))
+            });
         let annotations = AnnotationRequest {
             color_bar: bar,
             legend: annotation("legend", self.legend.as_ref(), compose::position)?,
             axes: annotation("axes", self.axes.as_ref(), str::parse)?,
             scale_bar: annotation("scale_bar", self.scale_bar.as_ref(), str::parse)?,
+            labels: labels.collect::<Result<_, String>>()?,
             ..AnnotationRequest::default()
         };
         let modes = SliceMode::ALL.map(|(name, _)| name);

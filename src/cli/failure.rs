@@ -164,9 +164,7 @@ impl Failure {
 
 /// Options of other programs, and those of this one that do the same.
 const OTHERS: &[(&str, &[&str])] = &[
-    ("--hide", &["--select"]),
     ("--filter-by", &["--select"]),
-    ("--camera", &["--view"]),
     ("--rotate", &["--view", "--roll", "--turntable"]),
     ("--rotation", &["--view", "--roll", "--turntable"]),
     ("--fov", &["--zoom", "--projection"]),

@@ -233,7 +233,7 @@ fn cells_of_crystals_are_completed_and_have_polyhedra() {
         "TiO2\n1\n4.594 0 0\n0 4.594 0\n0 0 2.9586\nTi O\n2 4\nDirect\n0 0 0\n.5 .5 .5\n\
          .3051 .3051 0\n.6949 .6949 0\n.1949 .8051 .5\n.8051 .1949 .5\n",
     );
-    folder.write("water.xyz", WATER);
+    folder.write("bare.xyz", "1\n\nO 0 0 0\n");
     let bodies = |more: &[&str]| {
         let args = ["rutile.poscar", "--json", "-o", "a.png"];
         let statistics = &folder.json(&[&SMALL[..], &args, more].concat())["statistics"];
@@ -251,7 +251,7 @@ fn cells_of_crystals_are_completed_and_have_polyhedra() {
         (&["rutile.poscar", "--polyhedra", "Ti-N"][..], "no type `N`"),
         (&["rutile.poscar", "--polyhedra", "Ti"], "two types"),
         (&["rutile.poscar", "--outside", "some"], "whole"),
-        (&["water.xyz", "--complete", "yes"], "no cell"),
+        (&["bare.xyz", "--complete", "yes"], "no cell"),
     ] {
         let output = folder.run(&[&["render", "-o", "b.png"], args].concat());
         let stderr = text(&output.stderr);
@@ -306,7 +306,7 @@ fn frames_are_made_whole_aligned_and_smoothed() {
         assert_ne!(bytes(name, &format!("--frame {frame} {args}")), plain, "{args}");
     }
     for (args, part) in [
-        ("--frame 1 --align=resname", "expected a comparison"),
+        ("--frame 1 --align=resname", "`resname` is no condition"),
         ("--frame 1 --align=element==O", "cannot be aligned by 1 particles"),
         ("--frame 1 --smooth 0", "0 is not in 1..=1000"),
         ("--frame 1 --select coordination==7", "none of its 4 particles"),

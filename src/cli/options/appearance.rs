@@ -52,7 +52,7 @@ pub(in crate::cli) struct AppearanceArgs {
         value_parser = |text: &str| text.parse::<ColorEnds>()
     )]
     color_range: Option<ColorEnds>,
-    /// Title of the color bar or legend, as in 'speed (m/s)'; v_x and m^2 have subscripts and superscripts, as has what is
+    /// Title of the color bar or legend, as in 'speed (m/s)'; `v_x` and `m^2` have subscripts and superscripts, as has what is
     /// between braces, v_{max} [default: the name of the column, with the unit if it is a length]
     #[arg(long, value_name = "TEXT", requires = "color_by", allow_hyphen_values = true)]
     color_title: Option<String>,
@@ -87,7 +87,7 @@ pub(in crate::cli) struct AppearanceArgs {
     )]
     polyhedra: Vec<WithText<Polyhedra>>,
     /// Opacity of the faces of polyhedra, 0 to 1 [default: 0.7]
-    #[arg(long, value_name = "NUMBER", requires = "polyhedra", value_parser = values::share)]
+    #[arg(long, value_name = "NUMBER", requires = "polyhedra", value_parser = values::opacity)]
     polyhedra_opacity: Option<f64>,
     /// Opacity of particles, and of their bonds: a number from 0 to 1, as in 0.3 or 30%, or a column or expression whose numbers it is,
     /// perhaps with those that become 0 and 1, as in charge:-1,1. What is behind is seen without refraction, and shadows are as

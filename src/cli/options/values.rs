@@ -201,10 +201,10 @@ pub(in crate::cli) fn positive(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "give a number greater than 0".to_owned())
 }
 
-/// A number from 0 to 1.
-pub(in crate::cli) fn share(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|number| (0.0..=1.0).contains(number));
-    number.ok_or_else(|| "give a number from 0 to 1".to_owned())
+/// A number from 0 to 1, or a percentage.
+pub(in crate::cli) fn opacity(text: &str) -> Result<f64, String> {
+    let number = share(text).filter(|number| (0.0..=1.0).contains(number));
+    number.ok_or_else(|| "give a number from 0 to 1, or a percentage".to_owned())
 }
 
 #[cfg(test)]

@@ -27,9 +27,8 @@ pub(super) struct Survey {
     matched: Vec<bool>,
     /// The choices by the first frame of the file, and types and strings, whose order determines their colors.
     trajectory: TrajectoryReader,
-    /// The names that colors stand for, if they are asked for, and the integers that these are, with the row of their colors in
-    /// `colors`.
-    categories: Option<Vec<(Category, Option<(usize, i64)>)>>,
+    /// The names that colors stand for, if they are asked for.
+    categories: Option<Vec<Named>>,
     /// The sizes of arrows in the first frame that has any.
     arrow_sizes: Option<ArrowSizes>,
     /// Warnings about the first frame that shows a sphere.
@@ -39,6 +38,13 @@ pub(super) struct Survey {
     shown: u64,
     /// True if all frames are surveyed, and not only the first.
     all: bool,
+}
+
+/// A name that a color stands for.
+struct Named {
+    category: Category,
+    /// The integer that the name is, and the row of its colors in [`Survey::colors`].
+    label: Option<(usize, i64)>,
 }
 
 impl Survey {
@@ -79,14 +85,14 @@ impl Survey {
                 let summary = summary.as_ref()?;
                 Some((row, summary.label(&category.name, category.color)?))
             });
-            let same = |(own, of): &&mut (Category, Option<(usize, i64)>)| {
-                own.name == category.name
-                    && *of == label
-                    && (label.is_some() || own.color == category.color)
+            let same = |own: &&mut Named| {
+                own.category.name == category.name
+                    && own.label == label
+                    && (label.is_some() || own.category.color == category.color)
             };
             match known.iter_mut().find(same) {
-                Some((own, _)) => own.count += category.count,
-                None => known.push((category, label)),
+                Some(own) => own.category.count += category.count,
+                None => known.push(Named { category, label }),
             }
         }
         self.colors.resize_with(summaries.len(), ColumnSummary::default);
@@ -120,7 +126,7 @@ impl Survey {
 
     /// Returns the names that colors stand for in all frames, with the colors that they have there.
     fn categories(&self, style: &ParticleStyle) -> Option<Vec<Category>> {
-        let in_all = |(category, label): &(Category, Option<(usize, i64)>)| {
+        let in_all = |Named { category, label }: &Named| {
             let Some((row, label)) = *label else { return Some(category.clone()) };
             let shared = style.column_colors().nth(row)?.shared.as_ref();
             let color = shared.and_then(|shared| shared.color_of(label))?;

@@ -143,7 +143,9 @@ mod tests {
     /// The summary of frames.
     fn summary(colors: &ColumnColors, frames: &[&[f64]]) -> ColumnSummary {
         let mut all = ColumnSummary::default();
-        frames.iter().for_each(|values| all.add(&ColumnSummary::of(colors, values)));
+        for values in frames {
+            all.add(&ColumnSummary::of(colors, values));
+        }
         all
     }
 

@@ -105,7 +105,8 @@ fn integers_of_labels_have_colors_of_their_own() {
 
 #[test]
 fn more_categories_than_colors_are_reported() {
-    let rows: String = (0..31).map(|row| format!("{row},0,0,m{row},{row}\n")).collect();
+    let rows: Vec<String> = (0..31).map(|row| format!("{row},0,0,m{row},{row}\n")).collect();
+    let rows = rows.concat();
     let table = format!("x,y,z,name,n\n{rows}");
     let chosen = ColumnColors { numbers: NumberColors::Categories, ..by("n") };
     for colors in [by("name"), chosen] {

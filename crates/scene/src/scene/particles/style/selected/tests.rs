@@ -107,7 +107,7 @@ fn columns_color_selections_by_their_own_range() {
     let (particles, applied) = apply(&style).expect("a style");
     assert_eq!(applied.legends.len(), 2);
     assert_eq!(style.column_colors().count(), 2);
-    assert_eq!(applied.legend().expect("a legend").label, "x (angstrom)");
+    assert_eq!(applied.legend().expect("a legend").label, "x (\u{c5})");
     assert_eq!(particles.spheres.color[4], Map::Viridis.at(1.0));
     assert_eq!(particles.spheres.color[3], Map::Viridis.at(0.75));
 }
