@@ -401,7 +401,8 @@ def particles_of(thing: Any) -> Any:
     if "atoms" in has:
         return from_mdanalysis(thing)
     if "iloc" in has:
-        return from_pandas(thing)
+        names = {str(name) for name in getattr(thing, "columns", ())}
+        return from_pandas(thing) if any(names.issuperset(own) for own in _COORDINATES) else thing
     if hasattr(thing.particles, "keys"):
         return from_ovito(thing)
     return from_gsd(thing) if hasattr(thing.particles, "position") else thing

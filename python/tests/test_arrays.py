@@ -94,7 +94,7 @@ def test_arrays_are_not_changed_and_not_kept(cloud):
         ({"color": [0.5, 0.5]}, "`color` has the shape (2,), but must have (3,) or (2, 3)"),
         ({"values": [1, np.nan]}, "values[1] is nan, but must be finite"),
         ({"values": [1, 2, 3]}, "`values` has the shape (3,), but must have (2,)"),
-        ({"values": [1, 2], "color_map": "jet"}, 'unknown color map "jet"; maps are viridis'),
+        ({"values": [1, 2], "color_map": "jet"}, 'unknown color map `jet`; maps are: viridis'),
         ({"values": [1, 2], "color_range": (3, 1)}, "`color_range` is 3 to 1, but the lower number comes first"),
         ({"color_bar": True}, "`color_bar` needs colors that stand for numbers"),
         ({"positions": np.ma.array([[0, 0, 0], [0, 9, 0]], mask=[[0] * 3, [0, 1, 0]])}, "positions[1, 1] is masked"),
