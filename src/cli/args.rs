@@ -3,9 +3,10 @@
 use super::command_line::command_line;
 use super::failure::Failure;
 use super::{
-    bench, compare, completions, field, info, man, merge, render, status, stress, version, view,
+    bench, compare, completions, field, help, info, man, merge, render, status, stress, version,
+    view,
 };
-use clap::Parser;
+use clap::{FromArgMatches, Parser};
 
 /// Examples and exit codes at the end of `--help`.
 const EXAMPLES: &str = "\
@@ -83,7 +84,9 @@ impl Args {
         if version::is_asked_in_detail(&std::env::args_os().collect::<Vec<_>>()) {
             return Ok(Command::Version);
         }
-        let args = Self::try_parse_from(command_line(program)?).map_err(Failure::Arguments)?;
+        let (program, line) = help::shortened(program.clone(), command_line(program)?);
+        let matches = program.try_get_matches_from(line).map_err(Failure::Arguments)?;
+        let args = Self::from_arg_matches(&matches).map_err(Failure::Arguments)?;
         Ok(args.command.unwrap_or_else(default))
     }
 }

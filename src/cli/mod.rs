@@ -10,6 +10,7 @@ mod devices;
 mod failure;
 mod field;
 mod files;
+mod help;
 mod info;
 mod man;
 mod merge;
