@@ -33,10 +33,17 @@ fn renders_report_their_error() {
     let pixels = 40.0 * 24.0;
     assert_eq!(report["statistics"]["samples"].as_f64().unwrap(), pixels * number("mean_samples"));
     assert_eq!(report["settings"]["spp"], 65_536);
-    let limited = folder.run(&[&small[..3], &["--until-error", "0.01%", "--spp", "16"]].concat());
+    let coarse = [&small[..3], &["--until-error", "0.01%", "--spp", "16"]].concat();
+    let limited = folder.run(&[&coarse[..], &["--stats"]].concat());
     assert!(limited.status.success());
     assert!(text(&limited.stderr).contains("increase --spp"), "{}", text(&limited.stderr));
     assert!(text(&limited.stdout).contains("16.0 samples per pixel (16 to 16)"));
+    let line = text(&folder.run(&coarse).stdout).trim_end().to_owned();
+    assert!(
+        line.starts_with("spherule.png: 40 x 24 pixels in ") && line.contains("error "),
+        "{line}"
+    );
+    assert_eq!(line.lines().count(), 1);
     let timed = folder.json(&[&small[..], &["--time", "10ms"]].concat());
     assert_eq!((&timed["noise"]["ended_by"], &timed["complete"]), (&json!("time"), &json!(true)));
     assert!(folder.json(&[&small[..], &["--spp", "4"]].concat())["noise"].is_null());

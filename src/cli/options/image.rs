@@ -105,7 +105,7 @@ pub(in crate::cli) struct ReportArgs {
     /// Also print the contents of the scene, and the work that is skipped because the scene does not need it
     #[arg(short, long)]
     pub(in crate::cli) verbose: bool,
-    /// Also print the time of each stage of the render
+    /// Also print samples, rays, decisions without rounding, memory, and the time of each stage of the render
     #[arg(long, conflicts_with = "quiet")]
     pub(in crate::cli) stats: bool,
     /// Print statistics and settings as one JSON object to standard output

@@ -4,6 +4,7 @@ use super::appearance::{self, draw_annotations, write_bar};
 use super::checkpoint::resume::Resumed;
 use super::checkpoint::writer::CheckpointWriter;
 use super::notices::Notices;
+use super::pace::Pace;
 use super::prepare::{PlacedScene, Prepared};
 use super::setup::RenderSetup;
 use super::summary::Summary;
@@ -41,6 +42,8 @@ pub(super) struct Session<'a> {
     pub(super) writer: Option<&'a CheckpointWriter>,
     /// The video, unless each image has its own file.
     pub(super) video: Option<Video>,
+    /// The pace, if the images are a sequence.
+    pub(super) pace: Option<Pace>,
 }
 
 /// Renders the image of a setup without a sequence.
@@ -142,8 +145,11 @@ fn write(
         let file = render.image.encode(setup.format, &channels, &options)?;
         write_file(&setup.output, &page::file(setup, prepared, file, &options)?)?;
     }
-    Summary::new(setup, prepared, render, judged, &options)
-        .report(setup.report, &mut session.notices);
+    Summary::new(setup, prepared, render, judged, &options).report(
+        setup.report,
+        session.pace,
+        &mut session.notices,
+    );
     Ok(())
 }
 

@@ -13,6 +13,7 @@ mod metadata;
 mod noise;
 mod notes;
 mod notices;
+mod pace;
 mod page;
 mod part;
 mod prepare;

@@ -57,6 +57,17 @@ impl NoiseSummary {
         })
     }
 
+    /// Returns the estimate for the end of a line, in words that need no manual.
+    pub(super) fn brief(&self) -> String {
+        let percent = |fraction: f64| two_digits(100.0 * fraction);
+        let rare = if self.expected_share >= 0.5 {
+            ", mostly from light through glass or mirrors that few samples find"
+        } else {
+            ""
+        };
+        format!(", error {} % (at most {} %{rare})", percent(self.error), percent(self.bound))
+    }
+
     /// Formats the estimate as a line.
     pub(super) fn print(&self) {
         let percent = |fraction: f64| two_digits(100.0 * fraction);

@@ -3,6 +3,7 @@
 use super::memory;
 use super::noise::{NoiseSummary, missed};
 use super::notices::Notices;
+use super::pace::Pace;
 use super::prepare::Prepared;
 use super::setup::RenderSetup;
 use crate::cli::contents::{BodyCounts, found, plural};
@@ -44,6 +45,9 @@ pub(super) struct Summary<'a> {
     /// Warnings of the render itself.
     #[serde(skip)]
     new_warnings: usize,
+    /// Width and height.
+    #[serde(skip)]
+    size: [u32; 2],
 }
 
 /// Traversal and threads.
@@ -126,22 +130,39 @@ impl<'a> Summary<'a> {
             skipped: prepared.world.features.skipped(),
             notes: &prepared.notes,
             new_warnings: new_warnings.len(),
+            size: [prepared.region.width, prepared.region.height],
             warnings: known.cloned().chain(new_warnings).collect(),
         }
     }
 
     /// Prints the summary as JSON or as text, and its warnings.
-    pub(super) fn report(&self, report: ReportArgs, notices: &mut Notices) {
+    /// `pace` is that of the sequence of which the image is one.
+    pub(super) fn report(&self, report: ReportArgs, pace: Option<Pace>, notices: &mut Notices) {
         if report.json {
             output::print_json(self);
-        } else if !report.quiet {
+        } else if report.stats && !report.quiet {
             self.print();
-            if report.stats {
-                self.print_stages();
-            }
+            self.print_stages();
+        } else if !report.quiet {
+            self.print_line(pace);
         }
         let old = self.warnings.len() - self.new_warnings;
         self.warnings[old..].iter().for_each(|text| notices.warn(text));
+    }
+
+    /// Prints the image, the time and the error; of a sequence, also the place of the image and the time left.
+    fn print_line(&self, pace: Option<Pace>) {
+        let Statistics { load_seconds, build_seconds, render_seconds, .. } = self.statistics;
+        let place = pace.map_or_else(String::new, |pace| format!("{}: ", pace.place()));
+        let left =
+            pace.and_then(|pace| pace.left()).map_or_else(String::new, |left| format!(", {left}"));
+        let error = self.noise.as_ref().map_or_else(String::new, NoiseSummary::brief);
+        let [width, height] = self.size;
+        output::print(format_args!(
+            "{place}{}: {width} x {height} pixels in {:.1} s{error}{left}",
+            self.output,
+            load_seconds + build_seconds + render_seconds
+        ));
     }
 
     fn print_stages(&self) {

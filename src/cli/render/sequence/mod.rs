@@ -15,6 +15,7 @@ use self::survey::Survey;
 use super::checkpoint::resume::Resumed;
 use super::checkpoint::writer::CheckpointWriter;
 use super::image::{Session, render_placed};
+use super::pace::Pace;
 use super::prepare::PlacedScene;
 use super::setup::{Common, Place, RenderSetup};
 use super::video::Video;
@@ -66,7 +67,8 @@ pub(super) fn run(
     print_framing(&setup, &plan);
     survey.fix_colors(&mut setup.request.style);
     survey.fix_arrows(setup.request.style.arrows.as_mut());
-    let session = Session { video, ..session };
+    let pace = Some(Pace::new(own_count(&setup, &plan)));
+    let session = Session { video, pace, ..session };
     Sequence { setup, plan, files, session, resumed }.of_frames(path, &options, reader, survey)
 }
 
@@ -88,7 +90,8 @@ fn run_turntable(
     }
     let plan = Plan::new(None, setup.views.turntable())?;
     let video = check_outputs(setup, &plan, files)?;
-    let session = Session { video, ..session };
+    let pace = Some(Pace::new(own_count(setup, &plan)));
+    let session = Session { video, pace, ..session };
     Sequence { setup: setup.clone(), plan, files, session, resumed }.of_turn()
 }
 
@@ -118,6 +121,13 @@ fn check_outputs(
 fn is_assigned(setup: &RenderSetup, index: u64) -> bool {
     let own = |part: Part| index % u64::from(part.count()) == u64::from(part.number() - 1);
     setup.deal.is_none_or(own)
+}
+
+/// Returns the number of images that this process renders, if it is known.
+fn own_count(setup: &RenderSetup, plan: &Plan) -> Option<u64> {
+    let first = setup.sequence.first_picture.unwrap_or(0);
+    let own = (first..plan.count()?).filter(|&index| is_assigned(setup, index));
+    Some(own.count() as u64)
 }
 
 /// Surveys all frames of the sequence, or only the first one if the input can be read only once.
@@ -316,6 +326,9 @@ impl Sequence<'_> {
         }
         let session = &mut self.session;
         session.notices.start_picture(number);
+        if let Some(pace) = &mut session.pace {
+            pace.next();
+        }
         let resumed = self.resumed.take();
         let code = render_placed(&setup, PlacedScene::load(&setup, particles)?, session, resumed)?;
         // A color bar in a file is the same for all images.
