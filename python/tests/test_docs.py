@@ -19,8 +19,15 @@ def test_the_examples_of_the_manual_run(tmp_path, monkeypatch):
         "ITEM: TIMESTEP\n5\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp pp pp\n0 4\n0 5\n0 5\n"
         "ITEM: ATOMS id type x y z q\n1 1 0 0 0 0.5\n"
     )
+    atoms = [("CA", "GLY A   1", 0.0), ("C1", "LIG B   2", 4.0), ("O1", "LIG B   2", 5.2), ("O", "HOH C   3", 9.0)]
+    Path("complex.pdb").write_text(
+        "".join(
+            f"ATOM  {row:5}  {name:<3} {residue}    {x:8.3f}   0.000   0.000  1.00  0.00           {name[0]}\n"
+            for row, (name, residue, x) in enumerate(atoms, 1)
+        )
+    )
     blocks = re.findall(r"```python\n(.*?)```", MANUAL.read_text(), re.S)
-    assert len(blocks) == 6
+    assert len(blocks) == 7
     rng = np.random.default_rng(4)
     names = {"origins": rng.random((9, 3)), "directions": rng.normal(size=(9, 3))}
     for block in blocks:

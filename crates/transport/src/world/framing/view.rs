@@ -101,7 +101,10 @@ impl FromStr for View {
             _ => Axis::named(text).map(Self::Side),
         };
         let names = || Axis::ALL.iter().map(|(name, _)| *name).chain(["iso", "auto"]);
-        view.ok_or_else(|| suggest::help(text, names(), "sides are"))
+        view.ok_or_else(|| {
+            let help = suggest::help(text, names(), "sides are");
+            format!("{help}; or give azimuth and elevation, as in 30,20, or a vector, as in 1,1,0")
+        })
     }
 }
 
