@@ -1,6 +1,6 @@
 //! Help by topics: `-h` is one screen of the options that people use most, `--help TOPIC` all of one topic.
 
-use clap::Command;
+use clap::{Arg, Command};
 use std::ffi::OsString;
 
 /// The options of `-h`, in the order in which it lists them, each with its value and a line of help.
@@ -225,7 +225,6 @@ fn front(command: Command) -> Command {
     let more = TOPICS.map(|(name, _)| name).join(", ");
     let name = command.get_name().to_owned();
     let place = |id: &str| FRONT.iter().position(|(own, ..)| *own == id);
-    let is_positional = |id: &str| id == "scene";
     command
         .mut_args(|arg| match place(arg.get_id().as_str()) {
             Some(at) => {
@@ -233,7 +232,7 @@ fn front(command: Command) -> Command {
                 let arg = arg.value_name(value).help(help).hide_possible_values(true);
                 arg.hide_default_value(true).help_heading(None::<&str>).display_order(at)
             }
-            None if is_positional(arg.get_id().as_str()) => arg,
+            None if arg.is_positional() => arg,
             None => arg.hide(true),
         })
         .after_help(format!(
@@ -243,9 +242,9 @@ fn front(command: Command) -> Command {
 
 /// Leaves the options of a topic.
 fn about(command: Command, options: &[&str]) -> Command {
-    let is_of_topic = |id: &str| options.contains(&id);
+    let is_of_topic = |arg: &Arg| arg.is_positional() || options.contains(&arg.get_id().as_str());
     command
-        .mut_args(|arg| if is_of_topic(arg.get_id().as_str()) { arg } else { arg.hide(true) })
+        .mut_args(|arg| if is_of_topic(&arg) { arg } else { arg.hide(true) })
         .after_help("All options: --help")
 }
 
