@@ -358,7 +358,7 @@ class Sections(TypedDict, total=False):
     legend: Legend | Position | bool
     axes: Axes | str | bool
     scale_bar: ScaleBar | str | float | bool
-    label: str | Sequence[str] | Sequence[Label]
+    label: str | Sequence[str | Label]
     lettering: Lettering
     environment: Environment
     ground: Ground
