@@ -163,7 +163,7 @@ impl Failure {
 }
 
 /// Options of other programs, and those of this one that do the same.
-const OTHERS: &[(&str, &[&str])] = &[
+const FOREIGN_OPTIONS: &[(&str, &[&str])] = &[
     ("--filter-by", &["--select"]),
     ("--rotate", &["--view", "--roll", "--turntable"]),
     ("--rotation", &["--view", "--roll", "--turntable"]),
@@ -207,7 +207,7 @@ fn with_better_tip(mut error: clap::Error) -> clap::Error {
     if error.kind() != ErrorKind::UnknownArgument {
         return error;
     }
-    let same = OTHERS.iter().find(|(other, _)| *other == unknown).map(|(_, own)| *own);
+    let same = FOREIGN_OPTIONS.iter().find(|(other, _)| *other == unknown).map(|(_, own)| *own);
     if let Some(same) = same {
         error.remove(ContextKind::SuggestedArg);
         // It is that of the option that was suggested.

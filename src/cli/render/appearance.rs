@@ -45,7 +45,7 @@ pub(in crate::cli) fn write_bar(
     let Legend { scale, label } = legend;
     let Settings { width, height, dpi, .. } = *settings;
     let lettering = Lettering { size: setup.request.annotations.text_size, ..Lettering::default() };
-    let letter = dpi.map(|_| lettering.pixels((width, height), dpi));
+    let letter = dpi.map(|_| lettering.pixels(width.min(height), dpi));
     let bar = Bar::file(scale, label, height, letter, *format, dpi)?;
     write_file(path, &bar)
 }

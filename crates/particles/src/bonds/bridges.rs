@@ -26,8 +26,8 @@ const ANIONS: [(&str, f64); 12] = [
 /// Electronegativity of carbon, which bonds to metals as often as it stands between them and oxygen.
 const CARBON: f64 = 2.55;
 
-/// Other elements that are no metals. Silicon, germanium and antimony are cations beside anions, as metals are.
-const OTHERS: [&str; 10] = ["He", "B", "C", "Ne", "Ar", "Kr", "Xe", "At", "Rn", "Og"];
+/// Elements that are neither metals nor anions. Silicon, germanium and antimony are cations beside anions, as metals are.
+const NONMETALS: [&str; 10] = ["He", "B", "C", "Ne", "Ar", "Kr", "Xe", "At", "Rn", "Og"];
 
 /// The role of the atoms of a type.
 #[derive(Clone, Copy, Default)]
@@ -44,7 +44,7 @@ impl Species {
         let anion = ANIONS.iter().find(|(own, _)| *own == symbol);
         let carbon = if symbol == "C" { CARBON } else { 0.0 };
         Self {
-            is_metal: anion.is_none() && !OTHERS.contains(&symbol),
+            is_metal: anion.is_none() && !NONMETALS.contains(&symbol),
             is_anion: anion.is_some(),
             electronegativity: anion.map_or(carbon, |(_, own)| *own),
             covalent_radius: element.covalent_radius().unwrap_or(0.0),

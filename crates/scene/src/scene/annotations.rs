@@ -172,9 +172,10 @@ impl Lettering {
     /// Size in a picture without a resolution.
     const USUAL_SHARE: f64 = 0.03;
 
-    /// Returns the size of the em square in pixels, in a picture of so many pixels and pixels per inch.
-    pub fn pixels(&self, (width, height): (u32, u32), resolution: Option<NonZeroU16>) -> f64 {
-        let share = |share: f64| share * f64::from(width.min(height));
+    /// Returns the size of the em square in pixels, in a picture whose smaller side has so many pixels, and with so many pixels
+    /// per inch.
+    pub fn pixels(&self, smaller_side: u32, resolution: Option<NonZeroU16>) -> f64 {
+        let share = |share: f64| share * f64::from(smaller_side);
         match (self.size, resolution) {
             (Some(LetterSize::Share(own)), _) => share(own),
             (Some(LetterSize::Length(length)), _) => {
@@ -260,7 +261,7 @@ mod tests {
         let pixels = |text: Option<&str>, dpi| {
             let size = text.map(|text| text.parse().expect("a size"));
             let lettering = Lettering { size, ..Lettering::default() };
-            lettering.pixels((800, 600), NonZeroU16::new(dpi))
+            lettering.pixels(600, NonZeroU16::new(dpi))
         };
         assert_eq!(pixels(Some("5%"), 0), 30.0);
         assert_eq!(pixels(Some("0.05"), 600), 30.0);

@@ -59,7 +59,7 @@ pub fn insets(scene: &Scene, turns: bool) -> Insets {
     };
     let view = Viewpoint { axes, pixel: None, turns };
     let size = (scene.settings.width, scene.settings.height);
-    let letter = scene.annotations.lettering.pixels(size, scene.settings.dpi);
+    let letter = scene.annotations.lettering.pixels(size.0.min(size.1), scene.settings.dpi);
     let layout = Layout::new(&scene.annotations, size, letter, &view, Rgb::ZERO);
     layout.insets().unwrap_or_default()
 }
@@ -87,7 +87,7 @@ pub fn draw(
     let view = Viewpoint { axes: camera.axes(), pixel, turns };
     let ink = annotations.lettering.color.unwrap_or_else(|| ink(world, look));
     let size = (camera.width, camera.height);
-    let letter = annotations.lettering.pixels(size, resolution);
+    let letter = annotations.lettering.pixels(size.0.min(size.1), resolution);
     let layout = Layout::new(annotations, size, letter, &view, ink);
     let paper = paper(look, ink);
     let opacity = if paper.max_element() < DARK { DARK_PANEL } else { LIGHT_PANEL };
