@@ -395,7 +395,7 @@ impl ViewTable {
             style: ParticleStyle { framed, ..ParticleStyle::default() },
             preset: word("preset", self.preset.as_ref(), preset, &presets)?,
             camera: CameraRequest {
-                own: self.camera.as_deref().map(Camera::load).transpose()?,
+                own: self.camera.as_deref().map(Camera::read).transpose()?,
                 view: view.map_err(|why: String| format!("`view`: {why}"))?,
                 look_at,
                 zoom: zoom.map_err(|why| format!("`zoom`: {why}"))?,

@@ -82,7 +82,7 @@ pub(super) enum Failure {
     #[error("{0}")]
     Memory(String),
     #[error("{0}")]
-    Window(String),
+    View(String),
     #[error(
         "this program was compiled for a processor with {0}, which this processor does not have; build it on \
          this machine (cargo build --release), or install the archive or package, whose programs suit every \

@@ -32,6 +32,17 @@ const FRONT: [(&str, &str, &str); 25] = [
     ("turntable", "N", "Images of a full turn, as in 360 for a film"),
 ];
 
+/// Returns the topics, with the names of their options.
+pub(super) fn topics() -> &'static [(&'static str, &'static [&'static str])] {
+    &TOPICS
+}
+
+/// Returns whether a topic has an option, which is named as on the command line.
+pub(super) fn has(topic: &str, option: &str) -> bool {
+    let id = option.replace('-', "_");
+    TOPICS.iter().any(|(own, ids)| *own == topic && ids.contains(&id.as_str()))
+}
+
 /// The topics of `--help TOPIC`, with their options.
 const TOPICS: [(&str, &[&str]); 9] = [
     (
@@ -118,6 +129,7 @@ const TOPICS: [(&str, &[&str]); 9] = [
         &[
             "preset",
             "background",
+            "lit_from",
             "exposure",
             "tone",
             "integrator",

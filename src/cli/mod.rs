@@ -49,7 +49,7 @@ fn execute() -> Result<ExitCode, Failure> {
         Command::Render(args) => render::run(*args, &program),
         Command::Merge(args) => merge::run(&args),
         Command::Status(args) => Ok(status::run(&args)),
-        Command::View(args) => view::run(args),
+        Command::View(args) => view::run(&args, &program),
         Command::Field(args) => field::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Compare(args) => compare::run(&args),

@@ -16,6 +16,7 @@ mod looks;
 mod memory;
 mod outputs;
 mod packages;
+mod page;
 mod particles;
 mod parts;
 mod pictures;

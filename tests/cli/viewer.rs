@@ -1,7 +1,7 @@
-//! The viewer without a window: scripts of events, and saved files.
+//! The viewer without a page: scripts of events, and saved files.
 
 use crate::folder::{Folder, text};
-use crate::process::{run, run_with_input};
+use crate::process::run_with_input;
 use spherule_render::image::Image;
 use spherule_render::scene::Scene;
 use std::path::{Path, PathBuf};
@@ -133,7 +133,7 @@ fn overlays_are_shown_and_saved() {
 }
 
 #[test]
-fn windows_show_looks_as_saved_pictures_do() {
+fn pages_show_looks_as_saved_pictures_do() {
     let folder = Folder::new();
     folder.write("salt.xyz", SALT);
     let read = |name: &str| Image::read(folder.path(name)).expect("a picture");
@@ -179,10 +179,10 @@ fn looks_can_be_undone() {
 }
 
 #[test]
-fn turns_are_numbered_and_windows_are_drawn() {
+fn turns_are_numbered_and_shown() {
     let folder = Folder::new();
     let script = "size 64x48\nrepeat 3\nturn 120 0\nwait 1\nsave turn-{}.png\nend\nwindow w.png\n\
-                  key ?\nwindow help.png\nquit\njust nonsense";
+                  turn 9 0\nwindow preview.png\nquit\njust nonsense";
     folder.write("script.txt", script);
     let output = folder.run(&["view", "--headless-script", "script.txt"]);
     assert!(text(&output.stderr).contains("line 11"), "{}", text(&output.stderr));
@@ -190,11 +190,42 @@ fn turns_are_numbered_and_windows_are_drawn() {
     let read = |name: &str| Image::read(folder.path(name)).expect("a picture");
     let turn = ["turn-000.png", "turn-001.png", "turn-002.png"].map(read);
     assert!(turn[0] != turn[1] && turn[1] != turn[2]);
-    let (window, help) = (read("w.png"), read("help.png"));
-    // The status line is below the image's upper part, which help hides.
-    assert_eq!(window.pixels[..64 * 20], turn[2].pixels[..64 * 20]);
-    assert_ne!(window.pixels, turn[2].pixels);
-    assert_ne!(window.pixels[..64 * 20], help.pixels[..64 * 20]);
+    assert_eq!(read("w.png"), turn[2]);
+    assert_eq!(read("preview.png"), turn[2], "an image is shown until the next comes");
+}
+
+#[test]
+fn options_are_set_and_undone_by_scripts() {
+    let folder = Folder::new();
+    folder.write("salt.xyz", SALT);
+    let seen = |lines: &str| {
+        view(&folder, &["salt.xyz"], &format!("size 40x30\n{lines}\nwait 1\nsave a.png"));
+        folder.read("a.png")
+    };
+    let plain = seen("");
+    for (set, same) in [
+        ("set color-by q", "set color-by z\nundo\nset color-by q"),
+        (
+            "set style 'type Na: color=magenta'",
+            "set style 'type Na: color=red'\nset style 'type Na: color=magenta'",
+        ),
+        ("set view 30,20", "set view x\nset view 30,20"),
+        ("set preset outline", "set preset studio\nundo\nredo\nunset preset\nset preset outline"),
+        ("hide Na", "hide Na\nhide Cl\nshow Cl"),
+        ("frame 1", "frame 1\nundo\nredo"),
+        ("set exposure 1", "set exposure 2\nset exposure 1"),
+        ("set integrator ao", "undo\nset integrator ao"),
+    ] {
+        let once = seen(set);
+        assert!(once != plain, "{set}");
+        assert!(once == seen(same), "{same}");
+        assert!(plain == seen(&format!("{set}\nundo")), "{set}");
+    }
+    for line in ["set color-by nothing", "set output x.png", "set model cubes", "set nonsense 1"] {
+        folder.write("script.txt", &format!("{line}\nsave b.png"));
+        let output = folder.run(&["view", "salt.xyz", "--headless-script", "script.txt"]);
+        assert!(!output.status.success() && !folder.path("b.png").exists(), "{line}");
+    }
 }
 
 #[test]
@@ -254,16 +285,6 @@ fn terminal_pictures_need_a_terminal() {
     let output = folder.run(&["render", "--terminal", "--size", "8x8"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(text(&output.stderr).contains("--terminal needs a terminal"));
-}
-
-#[test]
-fn without_a_display_the_message_says_what_to_do() {
-    let folder = Folder::new();
-    let mut command = folder.command(&["view"]);
-    let output = run(command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY"));
-    assert_eq!(output.status.code(), Some(1));
-    let message = text(&output.stderr);
-    assert!(message.contains("--headless-script") && message.lines().count() == 1, "{message}");
 }
 
 /// Returns every file that may contain particles or a scene.
@@ -339,100 +360,11 @@ fn standard_input_is_read_once_with_all_its_columns() {
     assert_eq!(text(&output.stdout), "sphere 3: type K, at 0 0 3, radius 1, q = 1\n");
 }
 
-/// Returns the image that a script writes as `w.png` in a window.
-fn window(folder: &Folder, args: &[&str], script: &str) -> Image {
-    view(folder, args, &format!("{script}\nwindow w.png"));
-    Image::read(folder.path("w.png")).expect("a picture")
-}
-
-fn at(image: &Image, x: u32, y: u32) -> [f32; 3] {
-    image.pixel(x, y).expect("a pixel of the picture")
-}
-
-/// Returns whether no pixel of these columns differs from the others of its row.
-fn is_free(image: &Image, columns: std::ops::Range<u32>, rows: std::ops::Range<u32>) -> bool {
-    rows.into_iter().all(|y| {
-        let mut row = columns.clone().map(|x| at(image, x, y));
-        let first = row.next();
-        row.all(|pixel| Some(pixel) == first)
-    })
-}
-
 #[test]
-fn help_fits_every_window_at_every_scale() {
-    /// Keys that are pressed; help has fewer pages.
-    const MOST: usize = 20;
-    let folder = Folder::new();
-    for (size, scale) in [("1280x720", "1"), ("640x360", "1.5"), ("320x240", "1")] {
-        let mut script = vec![format!("size {size}\nscale {scale}\nkey tab\nwait 1\nwindow 0.png")];
-        script.extend((1..=MOST).map(|page| format!("key ?\nwindow {page}.png")));
-        view(&folder, &[], &script.join("\n"));
-        let read = |page| Image::read(folder.path(&format!("{page}.png"))).expect("a picture");
-        let (plain, mut pages) = (read(0), Vec::new());
-        for page in (1..=MOST).map(read).take_while(|page| *page != plain) {
-            assert!(!pages.contains(&page), "{size} at {scale}");
-            // Text ends within the window.
-            assert!(is_free(&page, page.width - 3..page.width, 0..12), "{size} at {scale}");
-            pages.push(page);
-        }
-        assert!(pages.len() < MOST, "{size} at {scale}");
-        assert_eq!(pages.len() == 1, size == "1280x720", "{} pages in {size}", pages.len());
-    }
-}
-
-#[test]
-fn the_status_line_is_wrapped_and_never_cut_off() {
-    let folder = Folder::new();
-    folder.write("salt.xyz", SALT);
-    let paper = |image: &Image, y: u32| at(image, 0, y) == at(image, image.width - 1, y);
-    for scale in ["1", "1.5", "2"] {
-        let script = format!("scale {scale}\nwait 1\nclick 80,60");
-        let args = ["salt.xyz", "--radii", "4", "--background", "white", "--size", "160x200"];
-        let image = window(&folder, &args, &script);
-        let last = image.height - 40..image.height;
-        assert!(is_free(&image, image.width - 3..image.width, last.clone()), "{scale}");
-        assert!(last.into_iter().all(|y| paper(&image, y)), "{scale}");
-        // More than one line, but no more than half of the window.
-        let light = at(&image, 0, 0);
-        let dark = |y: u32| at(&image, 0, y).iter().zip(light).all(|(a, b)| *a < 0.5 * b);
-        let rows = (0..image.height).filter(|&y| dark(y)).count();
-        assert!((40..=100).contains(&rows), "{rows} rows at {scale}");
-    }
-}
-
-#[test]
-fn the_side_that_a_slice_removes_is_shaded() {
-    let folder = Folder::new();
-    folder.write("salt.xyz", SALT);
-    let args = ["salt.xyz", "--radii", "1", "--background", "white"];
-    let plain = window(&folder, &args, "size 90x60\nkey tab\nwait 1");
-    let script = "size 90x60\nkey tab\nwait 1\nkey x\npress 45,55\nmove 45,5";
-    let cut = window(&folder, &args, script);
-    for y in [2, 30, 57] {
-        assert_eq!(at(&cut, 5, y), at(&plain, 5, y), "{y}");
-        let darker = |x: u32| at(&cut, x, y)[1] < 0.8 * at(&plain, x, y)[1];
-        assert!((86..90).all(darker), "{y}");
-    }
-    // The shading is gone.
-    let after = window(&folder, &args, &format!("{script}\nrelease\nwait 1\nkey a\nwait 1"));
-    assert_ne!(after, plain);
-}
-
-#[test]
-fn color_bars_are_shown_and_saved() {
+fn color_bars_are_saved() {
     let folder = Folder::new();
     folder.write("salt.xyz", SALT);
     let by_charge = ["salt.xyz", "--radii", "1", "--background", "white", "--color-by", "q"];
-    let with = window(&folder, &by_charge, "size 320x240\nwait 1");
-    let without = window(&folder, &by_charge, "size 320x240\nkey k\nkey tab\nwait 1");
-    let ends = [0x44_01_54, 0xFD_E7_25].map(spherule_render::color::srgb);
-    let near = |image: &Image, color: spherule_render::color::Rgb| {
-        let close =
-            |pixel: [f32; 3]| pixel.iter().zip(color.to_array()).all(|(a, b)| (a - b).abs() < 0.01);
-        (200..320).any(|x| (60..220).any(|y| close(at(image, x, y))))
-    };
-    assert!(ends.iter().all(|&color| near(&with, color)));
-    assert_ne!(with, without);
     // In the image it equals that of `render`, also for the saved scene.
     let inside = [&by_charge[..], &["--color-bar", "inside:top-left"]].concat();
     let by_charge = [&by_charge[..], &["--size", "160x200"]].concat();

@@ -294,6 +294,7 @@ fn request(args: &RenderArgs, style: ParticleStyle, part: bool) -> Result<Reques
         annotations: args.annotations.request(bar),
         settings,
         camera: args.views.camera()?,
+        lit_from: args.views.lit_from()?,
         lens: args.views.lens(),
         ..Request::default()
     };

@@ -3,21 +3,20 @@
 use rayon::prelude::*;
 use spherule_render::image::Image;
 
-/// Side of a square in pixels of the window.
+/// Side of a square in pixels.
 const SQUARE: u32 = 12;
 
 /// Gray values of the squares.
 const GRAYS: [f32; 2] = [0x66 as f32, 0x99 as f32];
 
 /// Blends an image of premultiplied colors over a checkerboard, in display values as browsers do. Returns
-/// `0x00RRGGBB`, row by row. `width` is the width of the window, to which the image is stretched.
+/// `0x00RRGGBB`, row by row.
 pub(super) fn over_checkerboard(
     image: &Image,
     alpha: &[f32],
-    width: u32,
     code: impl Fn(f32) -> u8 + Sync,
 ) -> Vec<u32> {
-    let square = |place: u32| place * width / image.width.max(1) / SQUARE;
+    let square = |place: u32| place / SQUARE;
     let packed = |(row, (pixel, &alpha)): (usize, (&[f32; 3], &f32))| {
         let (x, y) = (row as u32 % image.width, row as u32 / image.width);
         let paper = GRAYS[((square(x) + square(y)) % 2) as usize];
@@ -39,7 +38,7 @@ mod tests {
         image.pixels[0] = [0.0; 3];
         let mut alpha = vec![1.0; 96];
         (alpha[0], alpha[12]) = (0.0, 0.0);
-        let codes = over_checkerboard(&image, &alpha, 48, |value| (value * 200.0) as u8);
+        let codes = over_checkerboard(&image, &alpha, |value| (value * 200.0) as u8);
         assert_eq!((codes[0], codes[12], codes[1]), (0x0066_6666, 0x0099_9999, 0x00C8_0064));
     }
 }

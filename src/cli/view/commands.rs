@@ -2,7 +2,6 @@
 
 use super::camera_control::CameraControl;
 use super::events::{Action, Command};
-use super::help;
 use super::viewer::{LookChanges, Viewer, WIDER};
 use glam::DVec2;
 use spherule_render::scene::{Background, Camera, Pose, Preset, Rgb, Settings};
@@ -33,10 +32,8 @@ impl Viewer {
     /// Executes a command, and returns the action that it needs, if any.
     pub(super) fn execute(&mut self, command: Command) -> Option<Action> {
         match command {
-            Command::Help => self.next_page(),
-            Command::Status => self.status = !self.status,
+            Command::Page => (),
             Command::Escape if self.cutting => self.cutting = false,
-            Command::Escape if self.help.is_some() => self.help = None,
             Command::Escape | Command::Quit => return Some(Action::Quit),
             Command::Slice => {
                 self.cutting = true;
@@ -53,8 +50,9 @@ impl Viewer {
             Command::Background(step) => self.next_background(step),
             Command::DepthCue | Command::Outline => self.toggle(command),
             Command::Color(step) => return Some(self.next_color(step)),
-            Command::Bar => self.toggle_bar(),
             Command::Frame(step) => return self.next_frame(step),
+            Command::Undo => return self.undo(),
+            Command::Redo => return self.redo(),
             Command::Hide => return self.hide(),
             Command::ShowAll => {
                 self.content.hidden.clear();
@@ -70,23 +68,6 @@ impl Viewer {
     /// Shows a message in the status line.
     pub(super) fn show_message(&mut self, message: impl Into<String>) {
         self.message = message.into();
-    }
-
-    /// Shows the first or the next page of the help, and closes it after the last.
-    fn next_page(&mut self) {
-        let size = (self.settings.width, self.settings.height);
-        let next = self.help.map_or(0, |page| page + 1);
-        self.help = (next < help::pages(size, self.scale)).then_some(next);
-    }
-
-    fn toggle_bar(&mut self) {
-        self.bar = !self.bar;
-        self.show_message(match (&self.facts.legend, self.facts.color_bar) {
-            (None, _) => "no color bar: press c to color by a numeric column",
-            (_, true) => "the color bar is part of the image",
-            (_, false) if self.bar => "color bar: on",
-            _ => "color bar: off",
-        });
     }
 
     /// Moves the camera.
@@ -120,6 +101,7 @@ impl Viewer {
         let exposures = Settings::EXPOSURES;
         let exposure = (thirds * EXPOSURE).clamp(*exposures.start(), *exposures.end());
         self.settings.exposure = exposure;
+        self.tone_map();
         self.show_message(format!("exposure {:+.2} stops", self.settings.exposure));
     }
 
@@ -208,9 +190,16 @@ impl Viewer {
             self.show_message("no more frames");
             return None;
         }
-        self.content.frame = Some(next);
-        self.show_message(format!("frame {next}"));
-        Some(Action::Load)
+        Some(self.go_to_frame(next))
+    }
+
+    /// Goes to a frame, from 0; to the last one if there are not as many.
+    pub(super) fn go_to_frame(&mut self, frame: u64) -> Action {
+        let last = self.facts.frames.map_or(u64::MAX, |count| count.saturating_sub(1));
+        let frame = frame.min(last);
+        self.content.frame = Some(frame);
+        self.show_message(format!("frame {frame}"));
+        Action::Load
     }
 
     fn hide(&mut self) -> Option<Action> {
@@ -218,9 +207,26 @@ impl Viewer {
             self.show_message("click a sphere to hide its type");
             return None;
         };
+        self.hide_type(&name)
+    }
+
+    /// Hides a type.
+    pub(super) fn hide_type(&mut self, name: &str) -> Option<Action> {
+        if !self.facts.types.iter().any(|own| own == name) {
+            self.show_message(format!("there is no type {name}"));
+            return None;
+        }
+        self.content.hidden.retain(|own| own != name);
+        self.content.hidden.push(name.to_owned());
         self.show_message(format!("{name} hidden; press H to show all"));
-        self.content.hidden.push(name);
         Some(Action::Load)
+    }
+
+    /// Shows a hidden type again.
+    pub(super) fn show_type(&mut self, name: &str) -> Action {
+        self.content.hidden.retain(|own| own != name);
+        self.show_message(format!("{name} shown"));
+        Action::Load
     }
 }
 

@@ -1,11 +1,14 @@
 //! Content of the viewer, without camera and settings: a change needs a new world.
 
+use super::options::Options;
 use glam::DVec3;
 use spherule_render::scene::{Camera, Preset};
 
 /// Content of the viewer.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Content {
+    /// The file, and options that say how it looks.
+    pub(super) options: Options,
     /// Trajectory frame; `None` for that of the command line.
     pub(super) frame: Option<u64>,
     /// Hidden types.

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-/// Events from a window or a script.
+/// Events from a page or a script.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Event {
     /// The pointer moved to a position, in pixels from the top left corner.
@@ -15,13 +15,10 @@ pub(super) enum Event {
     Wheel(f64, Modifiers),
     /// A key was pressed, named as in [`super::keys::BINDINGS`].
     Key(String),
-    /// The window was resized, in pixels.
+    /// The image's size changed, in pixels.
     Resize(u32, u32),
     /// The display's scale factor changed.
     Scale(f64),
-    /// The window was asked to close.
-    #[cfg(feature = "view")]
-    Close,
 }
 
 /// Mouse buttons.
@@ -43,7 +40,8 @@ pub(super) struct Modifiers {
 /// Commands of keys. Numbers are steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Command {
-    Help,
+    /// A part of the page, which shows or hides it by itself.
+    Page,
     Fit,
     Reset,
     /// One of the sides of `--view`.
@@ -65,11 +63,11 @@ pub(super) enum Command {
     Hide,
     ShowAll,
     Color(i8),
-    Bar,
     Slice,
     Frame(i64),
     Samples(i8),
-    Status,
+    Undo,
+    Redo,
     Save,
     Escape,
     Quit,
@@ -94,4 +92,6 @@ pub(super) enum Purpose {
     Name,
     Pivot,
     Focus,
+    /// Tell what is there, and change nothing.
+    Hover,
 }

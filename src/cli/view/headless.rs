@@ -1,40 +1,48 @@
-//! A viewer without a window, which runs a script.
+//! A viewer without a page, which runs a script.
 
-use super::events::{Action, Event, Modifiers};
+use super::events::{Action, Purpose};
 use super::frame_rate::FrameRate;
-use super::load::{LoadedScene, Loader};
+use super::load::{LoadedScene, Loader, Origin};
 use super::loading::{Progress, ProgressReporter};
+use super::options::Options;
+use super::renderer::Renderer;
 use super::save::{SavedImage, save_bar, save_picture, save_scene};
 use super::script::Step;
-use super::session::Session;
+use super::session;
 use super::times::Times;
+use super::viewer::Viewer;
 use crate::cli::failure::Failure;
 use crate::cli::output;
 use crate::cli::render::RenderSetup;
-use glam::DVec2;
 use spherule_render::atomic::write_atomically;
 use spherule_render::image::{Compression, encode_codes};
+use spherule_render::scene::{Camera, Settings};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// A viewer that loads and renders in the calling thread.
-pub(super) struct Headless {
-    session: Session,
-    setup: Arc<RenderSetup<'static>>,
+pub(super) struct Headless<'a> {
+    viewer: Viewer,
+    /// `None` if the world was dropped to make room for the next.
+    renderer: Option<Renderer>,
+    setup: RenderSetup<'a>,
     loader: Loader,
     times: Times,
 }
 
-impl Headless {
-    /// Loads the scene of the setup.
-    pub(super) fn new(setup: RenderSetup<'static>) -> Result<Self, Failure> {
-        let setup = Arc::new(setup);
-        let (session, loader) = (Session::new(FrameRate::Whole), Loader::new(Arc::clone(&setup)));
-        let mut own = Self { session, setup, loader, times: Times::default() };
+impl<'a> Headless<'a> {
+    /// Loads the scene of the setup, which has these options.
+    pub(super) fn new(setup: RenderSetup<'a>, options: Options) -> Result<Self, Failure> {
+        let mut viewer = Viewer::new(&Camera::default(), &Settings::default(), FrameRate::Whole);
+        viewer.content.options = options;
+        let (loader, times) = (Loader::default(), Times::default());
+        let mut own = Self { viewer, renderer: None, setup, loader, times };
         let stage = own.load()?;
-        own.session.begin(stage, &own.setup);
+        session::begin(&mut own.viewer, &stage);
+        stage.warnings.iter().for_each(output::warn);
+        own.render_scene(stage);
         Ok(own)
     }
 
@@ -42,67 +50,43 @@ impl Headless {
     fn load(&mut self) -> Result<LoadedScene, Failure> {
         let progress = Arc::new(Progress::default());
         let _watch = ProgressReporter::start(&progress, self.setup.report.quiet, |_| ());
-        self.loader.load(&self.session.viewer.content, &progress)
+        self.loader.load(&self.viewer.content, &progress)
+    }
+
+    /// Sets the scene that is rendered.
+    fn render_scene(&mut self, stage: LoadedScene) {
+        if let Some(renderer) = &mut self.renderer {
+            return renderer.set(stage);
+        }
+        let Settings { width, height, spp, .. } = self.viewer.settings;
+        let samples = u64::from(width) * u64::from(height) * u64::from(spp);
+        let builder = self.setup.builder(self.viewer.facts.spheres, samples);
+        self.renderer = Some(Renderer::new(stage, self.setup.tracer, builder));
     }
 
     /// Runs the steps of a script.
     pub(super) fn run(mut self, steps: &[(usize, Step)], json: bool) -> Result<(), Failure> {
-        for (_, step) in steps {
-            if !self.step(step)? {
+        let parts = steps.iter().flat_map(|(_, step)| step.clone().parts());
+        for step in parts {
+            if !self.step(&step)? {
                 break;
             }
         }
-        self.times.print(self.session.viewer.facts.spheres, json);
+        self.times.print(self.viewer.facts.spheres, json);
         Ok(())
     }
 
     /// Runs one step; returns false to end the script.
     fn step(&mut self, step: &Step) -> Result<bool, Failure> {
         match step {
-            Step::Size(width, height) => return self.event(Event::Resize(*width, *height)),
-            Step::Scale(scale) => return self.event(Event::Scale(*scale)),
-            Step::Key(key) => return self.event(Event::Key(key.clone())),
-            Step::Click { place, held, double } => self.click(*place, *held, *double)?,
-            Step::Press { place, button, held } => {
-                self.event(Event::Pointer(*place))?;
-                return self.event(Event::Press { button: *button, held: *held, double: false });
-            }
-            Step::Move(place) => {
-                self.event(Event::Pointer(*place))?;
-                self.show_motion()?;
-            }
-            Step::Release => return self.event(Event::Release),
-            Step::Drag { from, to, button, held, steps } => {
-                self.event(Event::Pointer(*from))?;
-                self.event(Event::Press { button: *button, held: *held, double: false })?;
-                for step in 1..=*steps {
-                    let place = from.lerp(*to, f64::from(step) / f64::from(*steps));
-                    self.event(Event::Pointer(place))?;
-                    self.show_motion()?;
-                }
-                self.event(Event::Release)?;
-            }
-            Step::Wheel { steps, place, held } => {
-                self.event(Event::Pointer(*place))?;
-                self.event(Event::Wheel(*steps, *held))?;
-            }
-            Step::Turn(degrees) => {
-                let viewer = &mut self.session.viewer;
-                viewer.control.orbit(degrees * std::f64::consts::PI / 180.0);
-                viewer.change();
-            }
             Step::Wait(samples) => self.wait(*samples)?,
             Step::Save(path) => self.save(path)?,
             Step::Window(path) => self.capture(path)?,
-            Step::Adapt => self.session.viewer.frame_rate = FrameRate::measured(),
+            Step::Adapt => self.viewer.frame_rate = FrameRate::measured(),
             Step::Quit => return Ok(false),
+            _ => (),
         }
-        Ok(true)
-    }
-
-    /// Handles an event; returns false to end the viewer.
-    fn event(&mut self, event: Event) -> Result<bool, Failure> {
-        match self.session.viewer.handle(event) {
+        match self.viewer.step(step)? {
             None => (),
             Some(Action::Quit) => return Ok(false),
             Some(Action::Save) => {
@@ -112,45 +96,47 @@ impl Headless {
                 self.save(&path.with_extension("toml"))?;
             }
             Some(Action::Load) => {
-                self.session.drop_world();
-                let stage = self.load()?;
-                self.session.set(stage, &self.setup);
-            }
-            Some(Action::Frame(side)) => self.session.frame(side),
-            Some(Action::Pick(pixel, purpose)) => {
-                let viewer = &self.session.viewer;
-                let (camera, settings) = (viewer.control.camera.clone(), viewer.settings.clone());
-                let picked = match &mut self.session.renderer {
-                    Some(renderer) => renderer.pick(&camera, &settings, pixel)?,
-                    None => None,
+                // Memory may not be sufficient for two large worlds.
+                let is_large = |renderer: &mut Renderer| {
+                    renderer.stage.origin.as_ref().is_some_and(Origin::is_readable)
                 };
-                if let Some(line) = self.session.picked(picked, purpose) {
-                    output::print(line);
+                drop(self.renderer.take_if(is_large));
+                let stage = self.load()?;
+                session::set(&mut self.viewer, &stage);
+                self.render_scene(stage);
+            }
+            Some(Action::Frame(side)) => {
+                if let Some(renderer) = &self.renderer {
+                    session::frame(&mut self.viewer, &renderer.stage.scene, side);
                 }
             }
+            Some(Action::Pick(pixel, purpose)) => self.pick(pixel, purpose)?,
+        }
+        if matches!(step, Step::Move(_)) {
+            self.show_motion()?;
         }
         Ok(true)
     }
 
-    fn click(&mut self, place: DVec2, held: Modifiers, double: bool) -> Result<(), Failure> {
-        use super::events::Button::Left;
-        self.event(Event::Pointer(place))?;
-        self.event(Event::Press { button: Left, held, double: false })?;
-        self.event(Event::Release)?;
-        if double {
-            self.event(Event::Press { button: Left, held, double })?;
-            self.event(Event::Release)?;
+    fn pick(&mut self, pixel: (u32, u32), purpose: Purpose) -> Result<(), Failure> {
+        let (camera, settings) = (&self.viewer.control.camera, &self.viewer.settings);
+        let picked = match &mut self.renderer {
+            Some(renderer) => renderer.pick(camera, settings, pixel)?,
+            None => None,
+        };
+        if let Some(line) = session::picked_by(&mut self.viewer, picked, purpose) {
+            output::print(line);
         }
         Ok(())
     }
 
-    /// Renders and draws the next contents of the window.
+    /// Renders the next image.
     fn render(&mut self) -> Result<bool, Failure> {
-        let Some(request) = self.session.viewer.next_request() else { return Ok(false) };
-        let Some(renderer) = &mut self.session.renderer else { return Ok(false) };
+        let Some(request) = self.viewer.next_request() else { return Ok(false) };
+        let Some(renderer) = &mut self.renderer else { return Ok(false) };
         let picture = renderer.render(&request, &AtomicBool::new(false))?;
         if let Some(picture) = picture {
-            self.session.viewer.accept(picture);
+            self.viewer.accept(picture);
         }
         Ok(true)
     }
@@ -158,16 +144,15 @@ impl Headless {
     fn show_motion(&mut self) -> Result<(), Failure> {
         let start = Instant::now();
         self.render()?;
-        self.session.canvas.draw(&self.session.viewer);
         let time = start.elapsed();
-        self.session.viewer.frame_rate.record_interval(time);
+        self.viewer.frame_rate.record_interval(time);
         self.times.moving.push(time);
         Ok(())
     }
 
     fn wait(&mut self, samples: u32) -> Result<(), Failure> {
-        self.session.viewer.settings.spp = samples;
-        while self.session.viewer.sampled().is_none_or(|picture| picture.samples < samples) {
+        self.viewer.settings.spp = samples;
+        while self.viewer.sampled().is_none_or(|picture| picture.samples < samples) {
             if !self.render()? {
                 break;
             }
@@ -177,15 +162,14 @@ impl Headless {
 
     /// Saves the image or the scene, by the suffix of the name.
     fn save(&mut self, path: &Path) -> Result<(), Failure> {
-        if self.session.viewer.sampled().is_none() {
+        if self.viewer.sampled().is_none() {
             self.wait(1)?;
         }
-        let (Some(settings), Some(renderer)) =
-            (self.session.viewer.settings_of_picture(), &self.session.renderer)
+        let (Some(settings), Some(renderer)) = (self.viewer.settings_of_picture(), &self.renderer)
         else {
             return Ok(());
         };
-        let viewer = &self.session.viewer;
+        let viewer = &self.viewer;
         let Some(picture) = viewer.sampled() else { return Ok(()) };
         let seen = SavedImage {
             title: &viewer.facts.title,
@@ -201,12 +185,15 @@ impl Headless {
         save_bar(&self.setup, &viewer.facts, &settings)
     }
 
-    /// Writes the contents of the window.
+    /// Writes the image as it is shown.
     fn capture(&mut self, path: &Path) -> Result<(), Failure> {
-        self.session.canvas.draw(&self.session.viewer);
-        let canvas = &self.session.canvas;
-        let size = (canvas.width, canvas.height);
-        encode_codes(&canvas.codes(), size, Compression::default())
+        if self.viewer.shown.is_none() {
+            self.render()?;
+        }
+        let Some(picture) = &self.viewer.shown else { return Ok(()) };
+        let channels = |pixel: &u32| [16, 8, 0].map(|shift| (pixel >> shift) as u8);
+        let codes: Vec<u8> = picture.pixels.iter().flat_map(channels).collect();
+        encode_codes(&codes, picture.size(), Compression::default())
             .and_then(|file| write_atomically(path, |writer| writer.write_all(&file)))
             .map_err(|error| Failure::Write(path.to_owned(), error))
     }

@@ -1,7 +1,7 @@
 //! Render requests of the viewer, and their images.
 
 use super::frame_rate::Moving;
-use super::tonemap::{DisplaySettings, ToneMapped};
+use super::tonemap::DisplaySettings;
 use spherule_render::image::Image;
 use spherule_render::noise::Noise;
 use spherule_render::overlay::Matte;
@@ -28,7 +28,8 @@ pub(super) struct RenderRequest {
     pub(super) settings: Settings,
     pub(super) quality: Quality,
     pub(super) look: Look,
-    /// Display settings of the window.
+    /// True if it has the size of the page's image.
+    pub(super) whole: bool,
     pub(super) display: DisplaySettings,
     /// True for the first image of its version, which is not cancelled.
     pub(super) first: bool,
@@ -49,8 +50,8 @@ pub(super) struct Picture {
     pub(super) before: Option<Noise>,
     /// The image with overlays, if there are any.
     pub(super) drawn: Option<OverlaidImage>,
-    /// The tone-mapped image.
-    pub(super) tone_mapped: Option<Arc<ToneMapped>>,
+    /// Display values of what is shown: `0x00RRGGBB`, row by row from the top left.
+    pub(super) pixels: Arc<Vec<u32>>,
     /// Rays of the last samples, and their time.
     pub(super) rays: u64,
     pub(super) elapsed: Duration,

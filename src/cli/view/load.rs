@@ -15,8 +15,8 @@ use spherule_render::World;
 use spherule_render::compose::{self, CellRequest, Labels, Request, Staged, Subject, Value};
 use spherule_render::scene::particles::{
     ArrowSizes, Codes, Coloring, ColumnColors, FrameChoice, Kind, Kinds, Model, NumberColumn,
-    ParticleFrame, ParticleStyle, Particles, ReadOptions, ReadProgress, Role, TrajectoryReader,
-    count_frames,
+    ParticleFrame, ParticleStyle, Particles, ReadOptions, ReadProgress, Role, Selection,
+    TrajectoryReader, count_frames,
 };
 use spherule_render::scene::{Rgb, Scene, Spheres};
 use spherule_render::world::framing;
@@ -63,8 +63,9 @@ pub(super) struct LoadedScene {
     pub(super) world: World,
     /// Source of the spheres, if the scene has only a sketch of them.
     pub(super) origin: Option<Origin>,
-    #[cfg(feature = "view")]
     pub(super) content: Content,
+    /// Samples per pixel of the options.
+    pub(super) samples: Option<u32>,
     pub(super) labels: Labels,
     pub(super) facts: Facts,
     pub(super) warnings: Vec<String>,
@@ -75,7 +76,7 @@ pub(super) struct LoadedScene {
 /// Data needed to read a stage's spheres again.
 #[derive(Clone)]
 pub(super) struct Origin {
-    setup: Arc<RenderSetup<'static>>,
+    source: Source,
     content: Content,
     /// Modification time and length of the file when it was read.
     stamp: Option<(SystemTime, u64)>,
@@ -92,7 +93,11 @@ impl Base {
     ) -> Result<Self, Failure> {
         let has_color = |base: &Self| {
             let known = |name: &String| base.particles.can_color_by(name);
-            !base.more_columns || content.color.as_ref().is_none_or(known)
+            let wanted = match &setup.source {
+                Source::Particles(_, options) => options.columns.wanted.as_slice(),
+                _ => &[],
+            };
+            !base.more_columns || content.color.iter().chain(wanted).all(known)
         };
         let enough = |base: &Self| base.frame == content.frame && has_color(base);
         let frames = before.as_ref().and_then(|base| base.frames);
@@ -206,39 +211,56 @@ fn stage(
     Ok((request, staged.map_err(|fault| setup.refuse(fault))?))
 }
 
+/// All that reading depends on beside the frame and the colors.
+#[derive(PartialEq)]
+struct Reading {
+    source: Source,
+    select: Option<Selection>,
+    cell: CellRequest,
+    arrows: bool,
+}
+
+impl Reading {
+    fn of(setup: &RenderSetup) -> Self {
+        let mut source = setup.source.clone();
+        if let Source::Particles(_, options) = &mut source {
+            options.columns.wanted.clear();
+        }
+        let Request { style, cell, .. } = &setup.request;
+        Self { source, select: style.select.clone(), cell: *cell, arrows: style.arrows.is_some() }
+    }
+}
+
 /// Loads one stage after another, and keeps what was read last unless it is large.
+#[derive(Default)]
 pub(super) struct Loader {
-    setup: Arc<RenderSetup<'static>>,
+    /// What was read last, if something was.
+    reading: Option<Reading>,
     base: Option<Base>,
     /// The choices that all frames have in common.
     trajectory: TrajectoryReader,
     /// Sizes of the arrows of the first frame that had some: those of others compare with them.
     arrow_sizes: Option<ArrowSizes>,
-    /// True once loading has started.
-    began: bool,
 }
 
 impl Loader {
-    pub(super) fn new(setup: Arc<RenderSetup<'static>>) -> Self {
-        Self {
-            setup,
-            base: None,
-            trajectory: TrajectoryReader::default(),
-            arrow_sizes: None,
-            began: false,
-        }
-    }
-
     /// Reads the source if necessary, applies colors and materials, and builds the world.
     pub(super) fn load(
         &mut self,
         content: &Content,
         progress: &Progress,
     ) -> Result<LoadedScene, Failure> {
-        let setup = &self.setup;
-        let first = !std::mem::replace(&mut self.began, true);
-        if !first && self.base.is_none() && is_standard_input(&setup.source) {
-            return Err(Failure::Window(READ_ONCE.to_owned()));
+        let args = content.options.args()?;
+        let setup = &RenderSetup::new(&args.render)?;
+        let reading = Reading::of(setup);
+        let first = self.reading.is_none();
+        let same = self.reading.as_ref() == Some(&reading);
+        let kept = same && self.base.is_some();
+        if !(first || kept) && is_standard_input(&setup.source) {
+            return Err(Failure::View(READ_ONCE.to_owned()));
+        }
+        if !same {
+            *self = Self { reading: Some(reading), ..Self::default() };
         }
         let stamp = stamp(&setup.source);
         let read = Base::load(setup, content, self.base.take(), &mut self.trajectory, progress)?;
@@ -266,7 +288,9 @@ impl Loader {
             spheres: count,
             types: labels.kinds.table.iter().map(|kind| kind.name.clone()).collect(),
             size: size(&scene),
+            lit_from: request.lit_from.clone().unwrap_or_else(|| scene.camera.clone()),
             look: scene.look,
+            settings: scene.settings.clone(),
             preset: setup.preset(),
             orientation,
             color_bar: scene.annotations.color_bar.is_some(),
@@ -284,7 +308,7 @@ impl Loader {
         } else {
             World::build_with(&scene, builder).map_err(failed)?
         };
-        let origin = || Origin { setup: Arc::clone(setup), content: content.clone(), stamp };
+        let origin = || Origin { source: setup.source.clone(), content: content.clone(), stamp };
         let origin = many.then(origin);
         let mut warnings = std::mem::take(&mut scene.warnings);
         let device = Attached::to(&mut world, &scene.settings, setup.speed.device);
@@ -294,8 +318,8 @@ impl Loader {
             scene,
             world,
             origin,
-            #[cfg(feature = "view")]
             content: content.clone(),
+            samples: setup.picture.settings.spp(),
             labels,
             facts,
             warnings,
@@ -307,7 +331,7 @@ impl Loader {
 impl Origin {
     /// Returns whether the spheres can be read again, as far as is known in advance.
     pub(super) fn is_readable(&self) -> bool {
-        !is_standard_input(&self.setup.source) && self.stamp == stamp(&self.setup.source)
+        !is_standard_input(&self.source) && self.stamp == stamp(&self.source)
     }
 
     /// Reads the spheres of the stage again.
@@ -315,22 +339,24 @@ impl Origin {
     /// # Errors
     /// The file cannot be read twice, has changed, or cannot be read any more.
     pub(super) fn spheres(&self) -> Result<Spheres, Failure> {
-        let name = self.setup.source.name();
-        let failed = |why: &str| Err(Failure::Window(format!("{name}: {why}")));
-        if is_standard_input(&self.setup.source) {
-            return Err(Failure::Window(READ_ONCE.to_owned()));
+        let name = self.source.name();
+        let failed = |why: &str| Err(Failure::View(format!("{name}: {why}")));
+        if is_standard_input(&self.source) {
+            return Err(Failure::View(READ_ONCE.to_owned()));
         }
-        if self.stamp != stamp(&self.setup.source) {
+        if self.stamp != stamp(&self.source) {
             return failed("the file has changed since it was read; open it again");
         }
+        let args = self.content.options.args()?;
+        let setup = RenderSetup::new(&args.render)?;
         let base = Base::load(
-            &self.setup,
+            &setup,
             &self.content,
             None,
             &mut TrajectoryReader::default(),
             &Progress::default(),
         )?;
-        let (_, staged) = stage(&self.setup, &self.content, None, base.particles, base.scene)?;
+        let (_, staged) = stage(&setup, &self.content, None, base.particles, base.scene)?;
         Ok(staged.scene.spheres)
     }
 }
@@ -437,9 +463,8 @@ fn size(scene: &Scene) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::args::{Args, Command};
     use crate::cli::render::PlacedScene;
-    use clap::Parser;
+    use crate::cli::view::options::Options;
     use rand_xoshiro::SplitMix64;
     use rand_xoshiro::rand_core::{Rng, SeedableRng};
     use spherule_render::scene::text_without_columns;
@@ -487,12 +512,11 @@ mod tests {
     fn scenes(options: &[&str]) -> [Result<(String, Spheres), String>; 2] {
         let words = options.iter().flat_map(|option| option.split(' '));
         let path = "tests/data/particles/surface.extxyz";
-        let words = ["spherule", "render", path, "--size=64x48", "--spp=4", "--denoise=off"]
-            .into_iter()
-            .chain(words);
-        let args = Args::try_parse_from(words).expect("options");
-        let Some(Command::Render(args)) = args.command else { panic!("a render") };
-        let setup = Arc::new(RenderSetup::new(Box::leak(args)).expect("a setup"));
+        let words: Vec<&str> =
+            [path, "--size=64x48", "--spp=4", "--denoise=off"].into_iter().chain(words).collect();
+        let options = Options::parse(&words);
+        let args = options.args().expect("options");
+        let setup = RenderSetup::new(&args.render).expect("a setup");
         let described = |scene: &Scene| {
             (text_without_columns(scene).expect("no picture"), scene.spheres.clone())
         };
@@ -502,8 +526,8 @@ mod tests {
             framing::include_points(&mut scene, &[]).map_err(failed)?;
             Ok(described(&scene))
         });
-        let mut loader = Loader::new(Arc::clone(&setup));
-        let seen = loader.load(&Content::default(), &Progress::default());
+        let content = Content { options, ..Content::default() };
+        let seen = Loader::default().load(&content, &Progress::default());
         let seen = seen.map(|loaded| described(&loaded.scene.read().expect("no panic")));
         [rendered, seen].map(|scene| scene.map_err(|error| error.to_string()))
     }

@@ -1,4 +1,4 @@
-//! Progress of loading, for the window and for the terminal.
+//! Progress of loading, for the page and for the terminal.
 
 use crate::cli::progress::LoadMeter;
 use indicatif::HumanCount;
@@ -45,7 +45,6 @@ pub(super) struct ProgressReporter {
 
 impl Loading {
     /// Returns the first report, before anything is read.
-    #[cfg(feature = "view")]
     pub(super) fn of(name: &str) -> Self {
         Self { step: Step::reading(name), done: None }
     }

@@ -1,50 +1,55 @@
-//! `spherule view`: an interactive viewer in a window, or run by a script without a display.
+//! `spherule view`: an interactive viewer in a page of the browser, or run by a script.
 //!
 //! ```text
-//! window or script -> events -> Viewer -> requests -> Renderer -> images -> Viewer -> Canvas
+//! page or script -> steps -> Viewer -> requests -> Renderer -> images -> Viewer -> page or files
 //! ```
 //!
-//! The [`viewer`] is a state machine without clock, threads and files. [`headless`] drives it in one thread.
-//! `window`, the only module that depends on a display, drives it with two threads: one loads, the other
-//! renders.
+//! The [`viewer`] is a state machine without clock, threads and files. [`headless`] drives it in one thread. [`host`]
+//! drives it for pages, with a thread that loads and one that renders; [`listen`] connects pages, and [`client`] sends
+//! them images.
 
 mod args;
 mod camera_control;
-mod canvas;
 mod checkerboard;
-mod colorbar;
+mod client;
 mod commands;
 mod content;
 mod digits;
 mod events;
-mod font;
 mod frame_rate;
 mod headless;
-mod help;
+mod history;
+mod host;
+mod http;
 mod image;
 mod keys;
+mod listen;
 mod load;
 mod loading;
+
+mod options;
 mod overlay;
+mod pace;
+mod page;
+mod python;
 mod refinement;
 mod renderer;
 mod save;
 mod script;
 mod session;
-mod slicing;
+mod state;
+mod steps;
+mod tiles;
 mod times;
 mod tonemap;
 mod viewer;
-#[cfg(feature = "view")]
-mod window;
-#[cfg(feature = "view")]
 mod worker;
-mod wrap;
 
 pub(super) use self::args::ViewerArgs;
 
 use self::events::Command;
 use self::headless::Headless;
+use self::options::Options;
 use self::script::Step;
 use super::failure::Failure;
 use super::files::{Files, STREAM};
@@ -81,7 +86,7 @@ pub(super) fn examples() -> String {
     let mut text = "\
 Examples:
   spherule view                              the random field
-  spherule view scene.toml --size 1280x720
+  spherule view scene.toml --port 8000
   spherule view run.lammpstrj --color-by c_pe
   spherule view scene.toml --headless-script turn.txt
 
@@ -95,37 +100,22 @@ Keys and mouse:
     text + "\n" + &script::manual()
 }
 
-/// Runs the viewer.
-pub(super) fn run(args: Box<ViewerArgs>) -> Result<ExitCode, Failure> {
-    // A thread that is loading when the window closes is not joined, so its references must live as long as
-    // the process.
-    let args: &'static ViewerArgs = Box::leak(args);
+/// Runs the viewer; `program` is the definition of the program.
+pub(super) fn run(args: &ViewerArgs, program: &clap::Command) -> Result<ExitCode, Failure> {
     args.render.memory.apply();
     let setup = RenderSetup::new(&args.render)?;
     refuse(args, &setup)?;
     check_bar(&setup)?;
-    if let Some(path) = &args.headless_script {
-        let steps = read_script(path)?;
-        script_files(args, path, &steps).check()?;
-        let json = args.render.report.json;
-        let pool = setup.pool()?;
-        return pool
-            .install(|| Headless::new(setup)?.run(&steps, json))
-            .map(|()| ExitCode::SUCCESS);
-    }
-    open(setup, args)
-}
-
-#[cfg(feature = "view")]
-fn open(setup: RenderSetup<'static>, args: &ViewerArgs) -> Result<ExitCode, Failure> {
-    window::run(setup, args.render.report.json).map(|()| ExitCode::SUCCESS)
-}
-
-#[cfg(not(feature = "view"))]
-fn open(_: RenderSetup<'static>, _: &ViewerArgs) -> Result<ExitCode, Failure> {
-    let message = "this program was built without windows; install it with `cargo install --path . \
-                   --features view`, or use --headless-script FILE";
-    Err(Failure::Window(message.to_owned()))
+    let options = Options::of_process(program)?;
+    let Some(path) = &args.headless_script else {
+        page::open(&setup, args, options, program)?;
+        return Ok(ExitCode::SUCCESS);
+    };
+    let steps = read_script(path)?;
+    script_files(args, path, &steps).check()?;
+    let json = args.render.report.json;
+    let pool = setup.pool()?;
+    pool.install(|| Headless::new(setup, options)?.run(&steps, json)).map(|()| ExitCode::SUCCESS)
 }
 
 /// Files that a script reads and writes.
@@ -160,7 +150,7 @@ fn script_files(args: &ViewerArgs, script: &Path, steps: &[(usize, Step)]) -> Fi
 }
 
 fn read_script(path: &Path) -> Result<Vec<(usize, Step)>, Failure> {
-    let failed = |message: String| Failure::Window(format!("{}: {message}", path.display()));
+    let failed = |message: String| Failure::View(format!("{}: {message}", path.display()));
     let text = std::fs::read_to_string(path)
         .map_err(|error| failed(format!("cannot be read: {error}")))?;
     script::parse(&text).map_err(failed)

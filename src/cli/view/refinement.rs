@@ -5,6 +5,7 @@ use super::image::{Picture, Quality, RenderRequest};
 use super::tonemap::DisplaySettings;
 use super::viewer::Viewer;
 use spherule_render::scene::{SamplerKind, Settings};
+use std::sync::Arc;
 
 /// Samples per pixel of the first image after a preview: denoised, it looks finished.
 const FIRST: u32 = 4;
@@ -32,6 +33,7 @@ impl Viewer {
             settings: Settings { width, height, spp, ..self.settings.clone() },
             quality,
             look: self.look(),
+            whole: size == whole.size,
             display: DisplaySettings::of(&self.settings),
             first: shown.is_none(),
         })
@@ -59,7 +61,7 @@ impl Viewer {
             let pixels = u64::from(width) * u64::from(height);
             self.frame_rate.record_time(pixels, shadows, picture.elapsed);
         }
-        self.shown = Some(picture);
+        self.shown = Some(Arc::new(picture));
         true
     }
 }

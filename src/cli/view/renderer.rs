@@ -5,7 +5,7 @@ use super::digits;
 use super::image::{OverlaidImage, Picture, Quality, RenderRequest};
 use super::load::{LoadedScene, columns};
 use super::overlay::OverlayCache;
-use super::tonemap::{ToneMapped, ToneMapper};
+use super::tonemap::ToneMapper;
 use crate::cli::failure::Failure;
 use crate::cli::output;
 use crate::cli::render::draw_annotations;
@@ -117,8 +117,7 @@ impl Renderer {
                 return Ok(None);
             }
         }
-        let whole = (request.settings.width, request.settings.height) == request.display.size;
-        if whole && !self.annotations.is_empty() {
+        if request.whole && !self.annotations.is_empty() {
             let plain = || OverlaidImage { image: image.clone(), matte: None };
             let OverlaidImage { image, matte } = drawn.get_or_insert_with(plain);
             let mut canvas = Canvas { image, matte: matte.take() };
@@ -137,14 +136,11 @@ impl Renderer {
             before,
             drawn,
             rays,
-            tone_mapped: None,
+            pixels: Arc::default(),
             elapsed: Duration::ZERO,
         };
-        let (width, height) = request.display.size;
-        let mut pixels = vec![0; width as usize * height as usize];
         let (image, matte) = picture.visible();
-        self.tone_mapper.map(image, matte, request.display, &mut pixels);
-        picture.tone_mapped = Some(Arc::new(ToneMapped { display: request.display, pixels }));
+        picture.pixels = Arc::new(self.tone_mapper.map(image, matte, request.display));
         picture.elapsed = start.elapsed();
         Ok(Some(picture))
     }

@@ -2,18 +2,17 @@
 
 use super::image::Picture;
 use super::load::Origin;
-use super::viewer::Facts;
+use super::viewer::{Facts, Viewer};
 use crate::cli::failure::Failure;
 use crate::cli::render::{
     RenderSetup, Subject, alpha, check_alpha, push_denoised, push_error, write_bar,
 };
+use spherule_render::atomic::write_atomically;
 use spherule_render::film::Region;
 use spherule_render::image::{Channel, Format, WriteOptions};
 use spherule_render::scene::{Camera, Header, Look, Scene, Settings, write_as};
 use std::path::Path;
-#[cfg(feature = "view")]
-use std::path::PathBuf;
-use std::sync::{PoisonError, RwLock};
+use std::sync::{Arc, PoisonError, RwLock};
 
 /// An image with the scene and settings that it is made from.
 pub(super) struct SavedImage<'a> {
@@ -25,9 +24,42 @@ pub(super) struct SavedImage<'a> {
     pub(super) picture: &'a Picture,
 }
 
+/// An image with all that saves it.
+pub(super) struct Saved {
+    pub(super) title: String,
+    pub(super) camera: Camera,
+    pub(super) settings: Settings,
+    pub(super) look: Look,
+    pub(super) picture: Arc<Picture>,
+}
+
+impl Saved {
+    /// Returns the current image of a viewer, if it is no preview.
+    pub(super) fn of(viewer: &Viewer) -> Option<Self> {
+        Some(Self {
+            title: viewer.facts.title.clone(),
+            camera: viewer.control.camera.clone(),
+            settings: viewer.settings_of_picture()?,
+            look: viewer.look(),
+            picture: Arc::clone(viewer.sampled()?),
+        })
+    }
+
+    pub(super) fn seen(&self) -> SavedImage<'_> {
+        let Self { title, camera, settings, look, picture } = self;
+        SavedImage { title, camera, settings, look: *look, picture }
+    }
+}
+
 /// Writes the image, as `spherule render` does for the saved scene.
 pub(super) fn save_picture(seen: &SavedImage, path: &Path) -> Result<(), Failure> {
-    let format = Format::of_suffix(path)?;
+    let file = encode_picture(seen, Format::of_suffix(path)?)?;
+    write_atomically(path, |writer| writer.write_all(&file))
+        .map_err(|error| Failure::Write(path.to_owned(), error))
+}
+
+/// Returns the file of the image, as `spherule render` writes it for the saved scene.
+pub(super) fn encode_picture(seen: &SavedImage, format: Format) -> Result<Vec<u8>, Failure> {
     check_alpha(seen.look.is_transparent(), format)?;
     let Settings { width, height, exposure, tone, dpi, .. } = *seen.settings;
     let resolution = dpi.filter(|_| format.has_resolution());
@@ -41,7 +73,7 @@ pub(super) fn save_picture(seen: &SavedImage, path: &Path) -> Result<(), Failure
     }
     let (image, matte) = seen.picture.visible();
     let channels: Vec<Channel> = matte.map(|matte| alpha(matte, format)).into_iter().collect();
-    Ok(image.write_layers(path, &channels, &options)?)
+    Ok(image.encode(format, &channels, &options)?)
 }
 
 /// Writes the color bar, if it has its own file and colors represent numbers.
@@ -70,19 +102,4 @@ pub(super) fn save_scene(
     let Some(origin) = origin else { return Ok(write_as(&scene, &header, path)?) };
     let whole = Scene { spheres: origin.spheres()?, ..scene.clone() };
     Ok(write_as(&whole, &header, path)?)
-}
-
-/// Returns the next free name: `view-002.png` if an image or a scene `view-001` exists.
-#[cfg(feature = "view")]
-pub(super) fn free_name(path: &Path) -> PathBuf {
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let suffix = path.extension().unwrap_or_default();
-    let names = (1_u32..)
-        .map(|number| path.with_file_name(format!("{stem}-{number:03}")).with_extension(suffix));
-    let is_there = |path: &Path| path.symlink_metadata().is_ok();
-    let free = |name: &PathBuf| {
-        let beside = ["toml", "csv", "pfm"].map(|suffix| name.with_extension(suffix));
-        !is_there(name) && !beside.iter().any(|path| is_there(path))
-    };
-    names.into_iter().find(free).unwrap_or_else(|| path.to_owned())
 }

@@ -6,6 +6,8 @@ use super::viewer::SCALES;
 use glam::DVec2;
 use spherule_render::image::Format;
 use spherule_render::suggest;
+use std::ffi::OsString;
+use std::fmt::Write;
 use std::path::PathBuf;
 
 /// Default number of steps of a drag.
@@ -14,53 +16,64 @@ const STEPS: u32 = 16;
 /// Maximum number of repetitions, and of steps after expanding them.
 const MOST: usize = 1 << 20;
 
-/// First words of lines.
-const STEP_NAMES: [&str; 18] = [
-    "size",
-    "scale",
-    "key",
-    "click",
-    "double-click",
-    "press",
-    "move",
-    "release",
-    "drag",
-    "wheel",
-    "turn",
-    "wait",
-    "save",
-    "window",
-    "repeat",
-    "end",
-    "adapt",
-    "quit",
+/// Commands of scripts and of the page, with their arguments and what they do.
+pub(super) const COMMANDS: [(&str, &str, &str); 27] = [
+    ("size", "640x360", "set the size of the image"),
+    ("scale", "1.5", "set the display's scale factor"),
+    ("key", "KEY", "press a key, such as c, F, ctrl+3, home"),
+    ("click", "X,Y", "click; may be followed by ctrl, shift or alt"),
+    ("double-click", "X,Y", "double click"),
+    ("press", "X,Y", "start a drag; followed by the same words as drag, except steps=N"),
+    ("move", "X,Y", "move the pointer"),
+    ("release", "", "end the drag"),
+    (
+        "drag",
+        "X,Y X,Y",
+        "drag; may be followed by left, middle or right, ctrl, shift or alt, steps=N",
+    ),
+    ("wheel", "STEPS X,Y", "turn the wheel, forward if positive; may be followed by shift"),
+    ("turn", "RIGHT UP", "orbit about the pivot by angles in degrees"),
+    (
+        "set",
+        "OPTION [VALUE]...",
+        "give an option of render, as in set color-by vx; several values give it repeatedly",
+    ),
+    ("camera", "'eye = [X,Y,Z], ...'", "place the camera by keys of [camera]"),
+    ("unset", "OPTION", "take an option back"),
+    ("frame", "N", "go to a frame, from 0"),
+    ("hide", "TYPE", "hide a type of particles"),
+    ("show", "TYPE", "show a hidden type again"),
+    ("undo", "", "undo the last change"),
+    ("redo", "", "do it again"),
+    ("wait", "N", "wait until the image has N samples per pixel"),
+    (
+        "save",
+        "FILE",
+        "save the image, by its suffix: SUFFIXES, or as .toml a scene that renders to the same image",
+    ),
+    ("window", "FILE.png", "save the image as it is shown, a preview, too"),
+    ("repeat", "N", "repeat the lines up to end N times; {} in a name is the count, from 000"),
+    ("end", "", "end the lines that are repeated"),
+    (
+        "adapt",
+        "",
+        "from here on, choose sizes of previews by the clock as the page does, to measure",
+    ),
+    ("quit", "", "end the script"),
+    ("hover", "X,Y", "tell what is at a point of the image"),
 ];
 
 /// Returns the help for scripts.
 pub(super) fn manual() -> String {
-    MANUAL.replace("SUFFIXES", &Format::written_suffixes())
+    let mut text =
+        "Commands of scripts for --headless-script, one per line; # starts a comment:".to_owned();
+    for (name, arguments, help) in COMMANDS {
+        let help = help.replace("SUFFIXES", &Format::written_suffixes());
+        // Writing to a string cannot fail.
+        let _ = write!(text, "\n  {:<30} {help}", format!("{name} {arguments}"));
+    }
+    text
 }
-
-const MANUAL: &str = "\
-Commands of scripts for --headless-script, one per line; # starts a comment:
-  size 640x360                   set the window's size
-  scale 1.5                      set the display's scale factor
-  key KEY                        press a key, such as c, F, ctrl+3, home
-  click X,Y                      click; may be followed by ctrl, shift or alt
-  double-click X,Y               double click
-  press X,Y                      start a drag; followed by the same words as drag, except steps=N
-  move X,Y                       move the pointer
-  release                        end the drag
-  drag X,Y X,Y                   drag; may be followed by left, middle or right, ctrl, shift or alt, steps=N
-  wheel STEPS X,Y                turn the wheel, forward if positive; may be followed by shift
-  turn RIGHT UP                  orbit about the pivot by angles in degrees
-  wait N                         wait until the image has N samples per pixel
-  save FILE                      save the image: SUFFIXES
-  save FILE.toml                 save a scene that renders to the same image
-  window FILE.png                save the contents of the window, with all text
-  repeat N ... end               repeat the lines between N times; {} in a name is the count, from 000
-  adapt                          from here on, choose image sizes by the clock as in a window, to measure
-  quit                           end the script";
 
 /// A step of a script.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,13 +81,43 @@ pub(super) enum Step {
     Size(u32, u32),
     Scale(f64),
     Key(String),
-    Click { place: DVec2, held: Modifiers, double: bool },
-    Press { place: DVec2, button: Button, held: Modifiers },
+    Click {
+        place: DVec2,
+        held: Modifiers,
+        double: bool,
+    },
+    Press {
+        place: DVec2,
+        button: Button,
+        held: Modifiers,
+    },
+    /// The second press of a double click.
+    PressAgain(DVec2),
     Move(DVec2),
     Release,
-    Drag { from: DVec2, to: DVec2, button: Button, held: Modifiers, steps: u32 },
-    Wheel { steps: f64, place: DVec2, held: Modifiers },
+    Drag {
+        from: DVec2,
+        to: DVec2,
+        button: Button,
+        held: Modifiers,
+        steps: u32,
+    },
+    Wheel {
+        steps: f64,
+        place: DVec2,
+        held: Modifiers,
+    },
     Turn(DVec2),
+    /// Place the camera by keys of `[camera]`.
+    Camera(String),
+    /// Set an option to values; a flag has the value `None`.
+    Set(String, Vec<Option<OsString>>),
+    Frame(u64),
+    Hide(String),
+    Show(String),
+    Undo,
+    Redo,
+    Hover(DVec2),
     Wait(u32),
     Save(PathBuf),
     Window(PathBuf),
@@ -84,8 +127,13 @@ pub(super) enum Step {
 
 /// Parses a script. Returns its steps with their line numbers.
 pub(super) fn parse(text: &str) -> Result<Vec<(usize, Step)>, String> {
-    let lines = text.lines().enumerate().map(|(row, line)| (row + 1, words(line)));
-    let lines: Vec<(usize, Vec<&str>)> = lines.filter(|(_, words)| !words.is_empty()).collect();
+    let mut lines = Vec::new();
+    for (row, line) in text.lines().enumerate() {
+        let words = words(line).map_err(|error| format!("line {}: {error}", row + 1))?;
+        if !words.is_empty() {
+            lines.push((row + 1, words));
+        }
+    }
     let mut steps = Vec::new();
     let rest = block(&lines, 0, None, &mut steps)?;
     match rest.first() {
@@ -94,21 +142,30 @@ pub(super) fn parse(text: &str) -> Result<Vec<(usize, Step)>, String> {
     }
 }
 
-fn words(line: &str) -> Vec<&str> {
-    line.split('#').next().unwrap_or_default().split_whitespace().collect()
+/// Parses one command, as the page sends it.
+pub(super) fn command(line: &str) -> Result<Step, String> {
+    let words = words(line)?;
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    step(&words, None)
 }
 
-type Lines<'a, 'l> = &'l [(usize, Vec<&'a str>)];
+/// Returns the words of a line as a shell does: in quotes are spaces, and `#`, part of a word.
+fn words(line: &str) -> Result<Vec<String>, String> {
+    shlex::split(line).ok_or_else(|| "a quote is not closed".to_owned())
+}
+
+type Lines<'l> = &'l [(usize, Vec<String>)];
 
 /// Parses up to the `end` of a block, or of the file, and returns the rest.
-fn block<'a, 'l>(
-    mut lines: Lines<'a, 'l>,
+fn block<'l>(
+    mut lines: Lines<'l>,
     depth: usize,
     count: Option<usize>,
     steps: &mut Vec<(usize, Step)>,
-) -> Result<Lines<'a, 'l>, String> {
+) -> Result<Lines<'l>, String> {
     while let Some(((row, words), rest)) = lines.split_first() {
         let at = |message: String| format!("line {row}: {message}");
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
         lines = match words[..] {
             ["end"] => return Ok(if depth == 0 { lines } else { rest }),
             ["repeat", times] => {
@@ -123,7 +180,7 @@ fn block<'a, 'l>(
                 after
             }
             _ => {
-                steps.push((*row, step(words, count).map_err(at)?));
+                steps.push((*row, step(&words, count).map_err(at)?));
                 rest
             }
         };
@@ -171,13 +228,26 @@ fn step(words: &[&str], count: Option<usize>) -> Result<Step, String> {
             Step::Wheel { steps: finite(steps)?, place: place(at)?, held }
         }
         ["turn", right, up] => Step::Turn(DVec2::new(finite(right)?, finite(up)?)),
+        ["camera", keys] => Step::Camera((*keys).to_owned()),
+        ["set", name] => Step::Set((*name).to_owned(), vec![None]),
+        ["set", name, values @ ..] => {
+            let values = values.iter().map(|value| Some(OsString::from(value))).collect();
+            Step::Set((*name).to_owned(), values)
+        }
+        ["unset", name] => Step::Set((*name).to_owned(), Vec::new()),
+        ["frame", index] => Step::Frame(number(index)?),
+        ["hide", name] => Step::Hide((*name).to_owned()),
+        ["show", name] => Step::Show((*name).to_owned()),
+        ["undo"] => Step::Undo,
+        ["redo"] => Step::Redo,
+        ["hover", at] => Step::Hover(place(at)?),
         ["wait", samples] => Step::Wait(number::<u32>(samples)?.max(1)),
         ["save", name] => Step::Save(named(name, count)),
         ["window", name] => Step::Window(named(name, count)),
         ["adapt"] => Step::Adapt,
         ["quit"] => Step::Quit,
         [first, ..] => {
-            let near = suggest::question(first, STEP_NAMES);
+            let near = suggest::question(first, COMMANDS.map(|(name, ..)| name));
             return Err(format!("unknown command `{first}`; see spherule view --help{near}"));
         }
         [] => return Err("nothing".to_owned()),
@@ -257,6 +327,10 @@ mod tests {
         let expected =
             [Step::Size(64, 48), turn(), save("a-000.png"), turn(), save("a-001.png"), Step::Quit];
         assert_eq!(steps, expected);
+        let set = parse("set style 'H: color=red # x' \"O: color=blue\" # two").unwrap();
+        let values = ["H: color=red # x", "O: color=blue"].map(|text| Some(text.into()));
+        assert_eq!(set, [(1, Step::Set("style".into(), values.to_vec()))]);
+        assert_eq!(command("unset cell"), Ok(Step::Set("cell".into(), vec![])));
         let drag = parse("drag 1,2 3.5,4 right ctrl steps=3").unwrap();
         let held = Modifiers { control: true, ..Modifiers::default() };
         let (from, to) = (DVec2::new(1.0, 2.0), DVec2::new(3.5, 4.0));
@@ -288,11 +362,9 @@ mod tests {
             let error = parse(text).unwrap_err();
             assert!(error.contains(near), "{text}: {error}");
         }
-        for name in
-            STEP_NAMES.iter().filter(|name| !["repeat", "end", "double-click"].contains(name))
-        {
-            assert!(MANUAL.contains(&format!("\n  {name}")), "{name}");
+        for (name, arguments, _) in COMMANDS {
+            let error = parse(&format!("{name} \"")).unwrap_err();
+            assert!(error.contains("line 1"), "{name} {arguments}: {error}");
         }
-        assert!(MANUAL.lines().skip(1).all(|line| line.starts_with("  ")));
     }
 }

@@ -1,97 +1,49 @@
-//! A viewing session: viewer, scene and actions that windows and scripts share.
+//! Changes of a viewer by its scene: what pages and scripts share.
 
-use super::canvas::Canvas;
 use super::events::Purpose;
-use super::frame_rate::FrameRate;
-use super::load::{LoadedScene, Origin};
-use super::renderer::{Picked, Renderer};
+use super::load::LoadedScene;
+use super::renderer::Picked;
 use super::viewer::Viewer;
 use crate::cli::options::views::from_side;
-use crate::cli::output;
-use crate::cli::render::RenderSetup;
 use spherule_render::compose::corners;
 use spherule_render::scene::{Camera, Pose, Projection, Scene, Settings};
 use spherule_render::world::framing;
 use std::sync::{PoisonError, RwLock, TryLockError};
 
 /// Default number of samples per pixel.
-pub(super) const SAMPLES: u32 = 1024;
+const SAMPLES: u32 = 1024;
 
-/// A viewer with its scene.
-pub(super) struct Session {
-    pub(super) viewer: Viewer,
-    pub(super) canvas: Canvas,
-    /// The renderer, unless it belongs to another thread.
-    pub(super) renderer: Option<Renderer>,
-}
-
-impl Session {
-    /// Creates a session without a scene.
-    pub(super) fn new(frame_rate: FrameRate) -> Self {
-        let (camera, settings) = (Camera::default(), Settings::default());
-        let viewer = Viewer::new(&camera, &settings, frame_rate);
-        Self { viewer, canvas: Canvas::default(), renderer: None }
-    }
-
-    /// Shows the first scene.
-    pub(super) fn begin(&mut self, stage: LoadedScene, setup: &RenderSetup) {
-        let samples = setup.picture.settings.spp().unwrap_or(SAMPLES);
-        begin(&mut self.viewer, &stage, samples);
-        stage.warnings.iter().for_each(output::warn);
-        self.renderer = Some(Renderer::new(stage, setup.tracer, builder(setup, &self.viewer)));
-    }
-
-    /// Drops a large world that can be read again, to free memory for the next one.
-    pub(super) fn drop_world(&mut self) {
-        let is_large = |renderer: &mut Renderer| {
-            renderer.stage.origin.as_ref().is_some_and(Origin::is_readable)
-        };
-        drop(self.renderer.take_if(is_large));
-    }
-
-    /// Shows another scene with the current camera.
-    pub(super) fn set(&mut self, stage: LoadedScene, setup: &RenderSetup) {
-        self.viewer.loaded(stage.facts.clone());
-        match &mut self.renderer {
-            Some(renderer) => renderer.set(stage),
-            None => {
-                self.renderer =
-                    Some(Renderer::new(stage, setup.tracer, builder(setup, &self.viewer)));
-            }
-        }
-    }
-
-    /// Fits everything into view, from a side or from the current direction.
-    pub(super) fn frame(&mut self, side: Option<&str>) {
-        if let Some(renderer) = &self.renderer {
-            frame(&mut self.viewer, &renderer.stage.scene, side);
-        }
-    }
-
-    /// Handles a picked sphere by its purpose; returns the text to print.
-    pub(super) fn picked(&mut self, picked: Option<Picked>, purpose: Purpose) -> Option<String> {
-        picked_by(&mut self.viewer, picked, purpose)
-    }
-}
-
-/// Returns the BVH builder for the viewer.
-pub(super) fn builder(
-    setup: &RenderSetup,
-    viewer: &Viewer,
-) -> spherule_render::bvh::builders::Builder {
-    let Settings { width, height, spp, .. } = viewer.settings;
-    let samples = u64::from(width) * u64::from(height) * u64::from(spp);
-    setup.builder(viewer.facts.spheres, samples)
-}
-
-/// Shows the first scene in a viewer, with `samples` per pixel.
-pub(super) fn begin(viewer: &mut Viewer, stage: &LoadedScene, samples: u32) {
-    let scene = stage.scene.read().unwrap_or_else(PoisonError::into_inner);
-    let settings = Settings { spp: samples, ..scene.settings.clone() };
-    let scale = viewer.scale;
-    *viewer = Viewer::new(&scene.camera, &settings, viewer.frame_rate);
-    viewer.scale = scale;
+/// Shows the first scene in a viewer.
+pub(super) fn begin(viewer: &mut Viewer, stage: &LoadedScene) {
+    let (camera, settings) = view_of(stage);
+    let (scale, content) = (viewer.scale, std::mem::take(&mut viewer.content));
+    *viewer = Viewer::new(&camera, &settings, viewer.frame_rate);
+    (viewer.scale, viewer.content) = (scale, content);
     viewer.loaded(stage.facts.clone());
+    viewer.history.begin(viewer.state());
+}
+
+/// Shows another scene, with the current camera and settings unless options changed them.
+pub(super) fn set(viewer: &mut Viewer, stage: &LoadedScene) {
+    let (camera, settings) = view_of(stage);
+    if std::mem::take(&mut viewer.takes_settings) {
+        let Settings { width, height, .. } = viewer.settings;
+        viewer.settings = Settings { width, height, ..settings };
+    }
+    if std::mem::take(&mut viewer.takes_camera) {
+        viewer.home = camera.clone();
+        viewer.set_camera(camera);
+    }
+    viewer.loaded(stage.facts.clone());
+    viewer.history.amend(viewer.state());
+}
+
+/// Camera and settings of a scene, as the viewer has them.
+fn view_of(stage: &LoadedScene) -> (Camera, Settings) {
+    let scene = stage.scene.read().unwrap_or_else(PoisonError::into_inner);
+    let spp = stage.samples.unwrap_or(SAMPLES);
+    let settings = Settings { spp, until_error: None, time: None, ..scene.settings.clone() };
+    (scene.camera.clone(), settings)
 }
 
 /// Fits everything into view, from a side or from the current direction.
@@ -99,7 +51,7 @@ pub(super) fn frame(viewer: &mut Viewer, scene: &RwLock<Scene>, side: Option<&st
     let mut scene = match scene.try_write() {
         Ok(scene) => scene,
         Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
-        // The window does not wait for a file that is written.
+        // The viewer does not wait for a file that is written.
         Err(TryLockError::WouldBlock) => {
             return viewer.show_message("the scene is being saved; try again");
         }
@@ -140,6 +92,9 @@ pub(super) fn picked_by(
     picked: Option<Picked>,
     purpose: Purpose,
 ) -> Option<String> {
+    if purpose == Purpose::Hover {
+        return picked.map(|picked| picked.text);
+    }
     let Some(picked) = picked else {
         viewer.show_message("no sphere here");
         return None;
@@ -152,6 +107,7 @@ pub(super) fn picked_by(
         }
         Purpose::Pivot => viewer.control.set_pivot(picked.point),
         Purpose::Focus => viewer.control.focus(picked.point),
+        Purpose::Hover => (),
     }
     viewer.change();
     None

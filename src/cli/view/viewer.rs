@@ -1,19 +1,22 @@
-//! The viewer's state: it handles events, requests images, and holds what the window shows. It uses no clock,
-//! threads or files, so that a window, a script and a test behave in the same way.
+//! The viewer's state: it handles events, requests images, and holds what the page shows. It uses no clock,
+//! threads or files, so that a page, a script and a test behave in the same way.
 
 use super::camera_control::CameraControl;
 use super::content::{Content, CutPlane};
 use super::events::{Action, Button, Event, Modifiers, Purpose};
 use super::frame_rate::FrameRate;
+use super::history::History;
 use super::image::Picture;
 use super::keys;
 use super::loading::Loading;
+use super::tonemap::{DisplaySettings, ToneMapper};
 use glam::DVec2;
 use spherule_render::elementary::pow;
 use spherule_render::scene::particles::{Legend, Orientation};
 use spherule_render::scene::{Background, Camera, Denoise, Look, Preset, Settings};
+use std::sync::Arc;
 
-/// Minimum and maximum side of the window in pixels.
+/// Minimum and maximum side of the image in pixels.
 const SIDES: (u32, u32) = (16, 16_384);
 
 /// Range of display scales.
@@ -22,10 +25,10 @@ pub(super) const SCALES: std::ops::RangeInclusive<f64> = 0.25..=8.0;
 /// Maximum movement of the pointer during a click, in pixels.
 const CLICK: f64 = 4.0;
 
-/// Angle of orbit for a drag over the height of the window, in radians.
+/// Angle of orbit for a drag over the height of the image, in radians.
 const TURN: f64 = 4.0;
 
-/// Factors of the distance for a step of the wheel, and for a drag over the height of the window.
+/// Factors of the distance for a step of the wheel, and for a drag over the height of the image.
 const WHEEL: f64 = 0.88;
 const DRAG: f64 = 8.0;
 
@@ -47,8 +50,11 @@ pub(super) struct Facts {
     pub(super) frames: Option<u64>,
     /// Radius of the bounding sphere of the scene.
     pub(super) size: f64,
-    /// The scene's look.
+    /// The camera that the preset's lights follow.
+    pub(super) lit_from: Camera,
+    /// The scene's look and settings.
     pub(super) look: Look,
+    pub(super) settings: Settings,
     /// The preset of the command line, or the default one of particles.
     pub(super) preset: Option<Preset>,
     /// The orientation of the particles, if the scene is of particles.
@@ -86,7 +92,7 @@ enum Drag {
 pub(super) struct Viewer {
     pub(super) control: CameraControl,
     pub(super) home: Camera,
-    /// Settings with the size of the window, and the final number of samples.
+    /// Settings with the size of the page's image, and the final number of samples.
     pub(super) settings: Settings,
     pub(super) content: Content,
     pub(super) touched: LookChanges,
@@ -94,20 +100,20 @@ pub(super) struct Viewer {
     pub(super) frame_rate: FrameRate,
     /// Type of the last clicked sphere.
     pub(super) named: Option<String>,
-    /// Message in the status line.
+    /// Message to the user.
     pub(super) message: String,
-    /// The visible page of the help, from 0.
-    pub(super) help: Option<usize>,
-    pub(super) status: bool,
-    /// True if the window shows a color bar.
-    pub(super) bar: bool,
+    pub(super) history: History,
+    /// True if the camera and the settings of the content that is loaded next are taken.
+    pub(super) takes_camera: bool,
+    pub(super) takes_settings: bool,
+    pub(super) tone_mapper: ToneMapper,
     /// The display's scale.
     pub(super) scale: f64,
     /// Progress of loading, if it takes long.
     pub(super) loading: Option<Loading>,
     /// True if the next drag is a slice.
     pub(super) cutting: bool,
-    pub(super) shown: Option<Picture>,
+    pub(super) shown: Option<Arc<Picture>>,
     /// Version of the view, which grows with every change.
     pub(super) version: u64,
     pointer: DVec2,
@@ -126,10 +132,11 @@ impl Viewer {
             facts: Facts::default(),
             frame_rate,
             named: None,
-            message: "press ? for help".to_owned(),
-            help: None,
-            status: true,
-            bar: true,
+            message: String::new(),
+            history: History::default(),
+            takes_camera: false,
+            takes_settings: false,
+            tone_mapper: ToneMapper::default(),
             scale: 1.0,
             loading: None,
             cutting: false,
@@ -146,6 +153,16 @@ impl Viewer {
         self.facts = facts;
         self.loading = None;
         self.change();
+    }
+
+    /// Shows the current image with other display settings.
+    pub(super) fn tone_map(&mut self) {
+        if let Some(picture) = &mut self.shown {
+            let display = DisplaySettings::of(&self.settings);
+            let (image, matte) = picture.visible();
+            let pixels = Arc::new(self.tone_mapper.map(image, matte, display));
+            Arc::make_mut(picture).pixels = pixels;
+        }
     }
 
     /// Starts a new version: refinement starts anew.
@@ -165,8 +182,9 @@ impl Viewer {
     }
 
     /// Returns the current image if it is up to date and no preview.
-    pub(super) fn sampled(&self) -> Option<&Picture> {
-        let current = |picture: &&Picture| picture.version == self.version && picture.samples > 0;
+    pub(super) fn sampled(&self) -> Option<&Arc<Picture>> {
+        let current =
+            |picture: &&Arc<Picture>| picture.version == self.version && picture.samples > 0;
         self.shown.as_ref().filter(current)
     }
 
@@ -179,17 +197,13 @@ impl Viewer {
     }
 
     /// Returns whether the pointer is moving the camera.
-    #[cfg(feature = "view")]
     pub(super) fn is_dragging(&self) -> bool {
         matches!(self.drag, Some(Drag::Turn | Drag::Pan | Drag::Zoom | Drag::Roll))
     }
 
-    /// Returns the line of the current slice.
-    pub(super) fn cut(&self) -> Option<[DVec2; 2]> {
-        match self.drag {
-            Some(Drag::CutPlane(start)) => Some([start, self.pointer]),
-            _ => None,
-        }
+    /// Returns whether the next drag is a slice.
+    pub(super) fn is_cutting(&self) -> bool {
+        self.cutting || matches!(self.drag, Some(Drag::CutPlane(_)))
     }
 
     /// Handles an event, and returns the action that it needs, if any.
@@ -217,8 +231,6 @@ impl Viewer {
             Event::Scale(scale) => {
                 self.scale = scale.clamp(*SCALES.start(), *SCALES.end());
             }
-            #[cfg(feature = "view")]
-            Event::Close => return Some(Action::Quit),
         }
         None
     }
@@ -272,7 +284,8 @@ impl Viewer {
         }
     }
 
-    fn pixel(&self, place: DVec2) -> (u32, u32) {
+    /// Returns the pixel at a place in the image.
+    pub(super) fn pixel(&self, place: DVec2) -> (u32, u32) {
         let last =
             DVec2::new(f64::from(self.settings.width), f64::from(self.settings.height)) - 1.0;
         let place = place.clamp(DVec2::ZERO, last);

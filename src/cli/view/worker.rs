@@ -1,6 +1,6 @@
-//! Background threads of a window: one loads scenes, the other renders them.
+//! Background threads of a session: one loads scenes, the other renders them.
 //!
-//! The window waits for neither. The latest request wins: the current render is cancelled by a flag, which is
+//! The session waits for neither. The latest request wins: the current render is cancelled by a flag, which is
 //! checked for each tile.
 
 use super::content::Content;
@@ -13,13 +13,12 @@ use crate::cli::failure::Failure;
 use crate::cli::render::RenderSetup;
 use rayon::ThreadPool;
 use spherule_render::scene::{Camera, Settings};
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 
-/// Messages to the window.
+/// Messages to the session.
 pub(super) enum Message {
     /// Progress of loading.
     Loading(Loading),
@@ -28,8 +27,6 @@ pub(super) enum Message {
     /// A request is done; `None` if it was cancelled.
     Picture(Result<Option<Picture>, Failure>),
     Picked(Result<Option<Picked>, Failure>, Purpose),
-    /// A file was saved, or failed.
-    Saved(Result<PathBuf, Failure>),
 }
 
 /// A request to load.
@@ -63,7 +60,7 @@ impl Workers {
     /// # Errors
     /// The pools of threads cannot be started.
     pub(super) fn start(
-        setup: &Arc<RenderSetup<'static>>,
+        setup: &RenderSetup,
         notify: impl Fn(Message) -> bool + Clone + Send + 'static,
     ) -> Result<Self, Failure> {
         let (requests, wanted) = channel();
@@ -72,7 +69,7 @@ impl Workers {
         let (loaders, renderers) = (setup.pool()?, setup.pool()?);
         let (tracer, builder) = (setup.tracer, setup.builder(usize::MAX, u64::MAX));
         let loaded = notify.clone();
-        let loader = Loader::new(Arc::clone(setup));
+        let loader = Loader::default();
         let quiet = setup.report.quiet;
         thread::spawn(move || load(&loaders, loader, &wanted, loaded, quiet));
         thread::spawn(move || {
@@ -96,7 +93,7 @@ impl Workers {
     }
 
     fn request(&self, content: &Content, dropped: Option<Receiver<()>>) {
-        // If the receiving thread has ended, the window ends too.
+        // If the receiving thread has ended, the session ends too.
         let _ = self.requests.send(LoadRequest { content: content.clone(), dropped });
     }
 

@@ -120,9 +120,13 @@ pub(in crate::cli) struct ViewArgs {
         value_parser = values::finite
     )]
     roll: Option<f64>,
-    /// Take the camera and its lens from a scene file, as the viewer saves it
+    /// Take the camera and its lens from a scene file, as the viewer saves it, or from keys of its [camera], as in
+    /// 'eye = [9, 2, 0], target = [0, 0, 0]'
     #[arg(long, value_name = "FILE")]
     camera: Option<PathBuf>,
+    /// Place the lights of the preset as for this camera, given as for --camera, and not as for the image's
+    #[arg(long, value_name = "FILE")]
+    lit_from: Option<PathBuf>,
     /// Camera projection
     #[arg(long, value_parser = names::parser(&PROJECTIONS))]
     projection: Option<Projection>,
@@ -168,8 +172,19 @@ impl ViewArgs {
         lists::put(&mut list, "zoom", self.zoom);
         lists::put(&mut list, "roll", self.roll);
         // Folders are private.
-        let name = self.camera.as_ref().and_then(|path| path.file_name());
+        let name = self.camera.as_deref().and_then(|path| match self.camera_file() {
+            Some(file) => file.file_name(),
+            None => Some(path.as_os_str()),
+        });
         lists::put(&mut list, "camera", name.map(|name| name.to_string_lossy().into_owned()));
+        let name = self.lit_from.as_deref().map(|path| {
+            if Camera::is_line(path) {
+                path.as_os_str()
+            } else {
+                path.file_name().unwrap_or_default()
+            }
+        });
+        lists::put(&mut list, "lit_from", name.map(|name| name.to_string_lossy().into_owned()));
         let projection = self.projection.map(|projection| PROJECTIONS.name(&projection));
         lists::put(&mut list, "projection", projection);
         lists::put(&mut list, "margin", self.margin);
@@ -215,13 +230,18 @@ impl ViewArgs {
     /// Returns the view that is asked for.
     pub(in crate::cli) fn camera(&self) -> Result<CameraRequest, FileError> {
         let Self { view, projection, margin, turntable, zoom, roll, .. } = *self;
-        let own = self.camera.as_deref().map(Camera::load).transpose()?;
+        let own = self.camera.as_deref().map(Camera::read).transpose()?;
         let look_at = match self.look_at.as_deref() {
             Some(LookAt::Point(point)) => Some(*point),
             Some(LookAt::Selection(_)) | None => None,
         };
         let turns = turntable.is_some();
         Ok(CameraRequest { own, view, look_at, zoom, roll, projection, margin, turns })
+    }
+
+    /// Returns the camera that the preset's lights follow, if it is not the image's.
+    pub(in crate::cli) fn lit_from(&self) -> Result<Option<Camera>, FileError> {
+        self.lit_from.as_deref().map(Camera::read).transpose()
     }
 
     /// Returns the selection of the particles that are framed.
@@ -234,7 +254,7 @@ impl ViewArgs {
 
     /// Returns the file that the camera is taken from.
     pub(in crate::cli) fn camera_file(&self) -> Option<&Path> {
-        self.camera.as_deref()
+        self.camera.as_deref().filter(|path| !Camera::is_line(path))
     }
 
     /// Returns a sentence on what is up and why; `None` if the view does not depend on it.

@@ -116,6 +116,35 @@ impl Camera {
     }
 }
 
+impl Camera {
+    /// Returns whether a text is keys and values of a camera, and not the name of a file.
+    pub fn is_line(text: &Path) -> bool {
+        text.to_str().is_some_and(|text| text.contains('=')) && !text.exists()
+    }
+
+    /// Reads a camera from a scene file, or from keys and values as `[camera]` has them, in one line:
+    /// `eye = [9, 2, 0], target = [0, 0, 0]`.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Camera::load`]; a key or a value is not valid.
+    pub fn read(text: &Path) -> Result<Self, FileError> {
+        if !Self::is_line(text) {
+            return Self::load(text);
+        }
+        let text = format!("camera = {{ {} }}", text.to_string_lossy());
+        let source = Source { path: Path::new("camera"), text: &text, folder: Path::new("") };
+        with_root(&source, |root| root.section().map(Option::unwrap_or_default))
+    }
+
+    /// Returns the camera in one line, as [`Camera::read`] takes it.
+    pub fn to_line(&self) -> String {
+        let section = crate::scene::keys::section_text(self);
+        let keys = section.lines().filter(|line| line.contains('='));
+        keys.collect::<Vec<_>>().join(", ")
+    }
+}
+
 impl Scene {
     /// Reads a scene file and the files that it names, with paths relative to the scene file.
     ///

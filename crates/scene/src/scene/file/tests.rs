@@ -303,3 +303,24 @@ fn numbers_may_be_grouped_and_signed() {
     let numbers = (scene.settings.spp, scene.settings.exposure, scene.camera.near);
     assert_eq!(numbers, (1000, -1.05, 3.0));
 }
+
+#[test]
+fn cameras_of_one_line_are_those_of_files() {
+    let mut camera = Camera { up: DVec3::Z, ..Camera::default() };
+    let (eye, target) = (DVec3::new(1.0 / 3.0, -2e-9, 7.25e12), DVec3::new(-0.0, 0.5, 1.0));
+    camera.pose = Pose::LookAt { eye, target };
+    for projection in [
+        Projection::Perspective { fov: 0.1 + 0.2 },
+        Projection::Orthographic { height: Some(1e-3) },
+    ] {
+        camera.projection = projection;
+        camera.lens = Some(Lens { aperture: 0.125, focus: Some(9.5) });
+        let line = camera.to_line();
+        assert!(!line.contains('\n') && Camera::is_line(Path::new(&line)), "{line}");
+        assert_eq!(Camera::read(Path::new(&line)).unwrap(), camera, "{line}");
+    }
+    let fault = Camera::read(Path::new("eye = [0, 0, 1], target = [0, 0]")).unwrap_err();
+    assert!(fault.to_string().contains("target"), "{fault}");
+    assert!(Camera::read(Path::new("fvo = 3")).unwrap_err().to_string().contains("`fov`"));
+    assert!(Camera::read(Path::new("no-such-file.toml")).is_err());
+}

@@ -1,0 +1,438 @@
+//! The session that pages look at: one thread holds the viewer, handles what pages and workers send, and tells pages what
+//! to show. It knows nothing of connections.
+
+use super::client::{Client, Reply, Shot};
+use super::content::Content;
+use super::events::{Action, Purpose};
+use super::frame_rate::FrameRate;
+use super::image::Picture;
+use super::listen::Call;
+use super::load::{LoadedScene, Origin};
+use super::loading::Loading;
+use super::options::Options;
+use super::save::{Saved, encode_picture, save_scene};
+use super::script::{self, Step};
+use super::session;
+use super::state::state;
+use super::viewer::Viewer;
+use super::worker::{Message, Workers};
+use crate::cli::failure::Failure;
+use crate::cli::output;
+use crate::cli::render::RenderSetup;
+use serde_json::json;
+use spherule_render::image::Format;
+use spherule_render::scene::{Camera, Scene, Settings};
+use std::collections::{HashSet, VecDeque};
+use std::path::Path;
+use std::sync::mpsc::{Receiver, SyncSender};
+use std::sync::{Arc, RwLock};
+use std::thread;
+use std::time::Instant;
+
+/// Maximum number of inputs that are handled before pages are told.
+const BATCH: usize = 64;
+
+/// Maximum number of commands that wait for the first scene.
+const EARLY: usize = 1000;
+
+/// Size of the image before a page says its own.
+const SIZE: (u32, u32) = (1280, 720);
+
+/// What the session handles.
+pub(super) enum Input {
+    Call(Call),
+    Message(Message),
+}
+
+impl From<Call> for Input {
+    fn from(call: Call) -> Self {
+        Self::Call(call)
+    }
+}
+
+/// The session.
+pub(super) struct Host {
+    viewer: Viewer,
+    workers: Workers,
+    /// The scene to save; `None` until one is loaded.
+    scene: Option<Arc<RwLock<Scene>>>,
+    /// Source of its spheres, if it has only a sketch of them.
+    origin: Option<Origin>,
+    /// The last loaded content.
+    loaded: Content,
+    /// Content to return to if loading fails, if its world was dropped to free memory.
+    fallback: Option<Content>,
+    clients: Vec<(u64, Arc<Client>)>,
+    /// The page whose commands are heeded.
+    steering: Option<u64>,
+    /// Commands that wait for the first scene.
+    early: Vec<(u64, String)>,
+    /// Downloads that wait for an image.
+    wanted: Vec<(u64, String)>,
+    greeting: String,
+    /// Warnings that were printed.
+    warned: HashSet<String>,
+    /// The state that pages know.
+    told: String,
+    /// Number of commands of the steering page, and for versions of the view, in their order, that before them.
+    heard: u64,
+    versions: VecDeque<(u64, u64)>,
+    /// Number of the last image, and the image.
+    shots: u64,
+    last: Option<Arc<Shot>>,
+    /// Time of the last image while the camera moves.
+    moved: Option<Instant>,
+}
+
+impl Host {
+    /// Starts the threads that load and render.
+    ///
+    /// # Errors
+    /// The threads cannot be started.
+    pub(super) fn start(
+        setup: &RenderSetup,
+        options: Options,
+        greeting: String,
+        inputs: &SyncSender<Input>,
+    ) -> Result<Self, Failure> {
+        let sender = inputs.clone();
+        let notify = move |message| sender.send(Input::Message(message)).is_ok();
+        let workers = Workers::start(setup, notify)?;
+        let settings = Settings { width: SIZE.0, height: SIZE.1, ..Settings::default() };
+        let mut viewer = Viewer::new(&Camera::default(), &settings, FrameRate::measured());
+        viewer.content.options = options;
+        viewer.loading = Some(Loading::of(&setup.source.name()));
+        workers.load(&viewer.content);
+        Ok(Self {
+            viewer,
+            workers,
+            scene: None,
+            origin: None,
+            loaded: Content::default(),
+            fallback: None,
+            clients: Vec::new(),
+            steering: None,
+            early: Vec::new(),
+            wanted: Vec::new(),
+            greeting,
+            warned: HashSet::new(),
+            told: String::new(),
+            heard: 0,
+            versions: VecDeque::new(),
+            shots: 0,
+            last: None,
+            moved: None,
+        })
+    }
+
+    /// Handles inputs until there can be none any more.
+    ///
+    /// # Errors
+    /// The first scene cannot be loaded.
+    pub(super) fn run(mut self, inputs: &Receiver<Input>) -> Result<(), Failure> {
+        while let Ok(first) = inputs.recv() {
+            for input in std::iter::once(first).chain(inputs.try_iter().take(BATCH)) {
+                match input {
+                    Input::Call(call) => self.hear(call),
+                    Input::Message(Message::Loaded(Err(failure))) if self.scene.is_none() => {
+                        return Err(failure);
+                    }
+                    Input::Message(message) => self.receive(message),
+                }
+            }
+            self.update();
+        }
+        Ok(())
+    }
+
+    /// Handles what a page does.
+    fn hear(&mut self, call: Call) {
+        match call {
+            Call::Joined(number, client) => {
+                client.reply(Reply::Text(self.greeting.clone()));
+                if !self.told.is_empty() {
+                    client.state(self.told.clone());
+                }
+                self.last.iter().for_each(|shot| client.show(Arc::clone(shot)));
+                self.clients.push((number, client));
+                self.steering.get_or_insert(number);
+            }
+            Call::Left(number) => {
+                self.clients.retain(|(own, _)| *own != number);
+                if self.steering == Some(number) {
+                    self.heard = 0;
+                    self.steering = self.clients.first().map(|(number, _)| *number);
+                }
+            }
+            Call::Line(number, line) => {
+                if let Err(message) = self.obey(number, &line) {
+                    self.tell(number, &json!({ "error": message }).to_string());
+                }
+            }
+        }
+    }
+
+    /// Executes a command of a page.
+    fn obey(&mut self, number: u64, line: &str) -> Result<(), String> {
+        if line == "steer" {
+            (self.steering, self.heard) = (Some(number), 0);
+            return Ok(());
+        }
+        if let Some(suffix) = line.strip_prefix("download ") {
+            return self.download(number, suffix.trim());
+        }
+        let step = script::command(line)?;
+        let looks = matches!(step, Step::Hover(_));
+        if !looks && self.steering != Some(number) {
+            return Err("another page steers".to_owned());
+        }
+        if self.scene.is_none() && !matches!(step, Step::Size(..) | Step::Scale(_)) {
+            if self.early.len() < EARLY {
+                self.early.push((number, line.to_owned()));
+            }
+            return Ok(());
+        }
+        self.heard += u64::from(!looks);
+        for step in step.parts() {
+            let action = self.viewer.step(&step).map_err(|failure| brief(&failure))?;
+            if let Some(action) = action {
+                self.act(number, &action)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn act(&mut self, number: u64, action: &Action) -> Result<(), String> {
+        match action {
+            // Pages come and go; the program ends by a signal.
+            Action::Quit => (),
+            Action::Load => self.load(),
+            Action::Save => return self.download(number, "png"),
+            Action::Frame(side) => {
+                if let Some(scene) = &self.scene {
+                    session::frame(&mut self.viewer, scene, *side);
+                }
+            }
+            Action::Pick(pixel, purpose) => {
+                let at = (self.viewer.control.camera.clone(), self.viewer.settings.clone());
+                self.workers.pick(at, *pixel, *purpose);
+            }
+        }
+        Ok(())
+    }
+
+    /// Requests the viewer's content. A large world is dropped first if it can be read again.
+    fn load(&mut self) {
+        if self.origin.as_ref().is_some_and(Origin::is_readable) {
+            self.fallback = Some(self.loaded.clone());
+        }
+        if self.fallback.is_some() {
+            self.workers.replace(&self.viewer.content);
+        } else {
+            self.workers.load(&self.viewer.content);
+        }
+    }
+
+    /// Handles what a worker has done.
+    fn receive(&mut self, message: Message) {
+        match message {
+            Message::Loading(loading) => self.viewer.loading = Some(loading),
+            Message::Loaded(Ok(stage)) => self.set(*stage),
+            Message::Loaded(Err(failure)) => {
+                // The visible content is the last loaded one.
+                self.viewer.content = self.loaded.clone();
+                self.viewer.history.amend(self.viewer.state());
+                self.viewer.loading = None;
+                self.show_error(&failure);
+                if let Some(content) = self.fallback.take() {
+                    self.workers.load(&content);
+                }
+            }
+            Message::Picture(Ok(Some(picture))) => self.show(picture),
+            Message::Picture(Ok(None)) => (),
+            Message::Picked(Ok(picked), Purpose::Hover) => {
+                let text = json!({ "hover": picked.map(|picked| picked.text) }).to_string();
+                self.tell_all(&text);
+            }
+            Message::Picked(Ok(picked), purpose) => {
+                if let Some(line) = session::picked_by(&mut self.viewer, picked, purpose) {
+                    output::print(line);
+                }
+            }
+            Message::Picture(Err(failure)) | Message::Picked(Err(failure), _) => {
+                self.show_error(&failure);
+            }
+        }
+    }
+
+    /// Shows loaded content. What was warned of before is not printed again.
+    fn set(&mut self, stage: LoadedScene) {
+        let new = stage.warnings.iter().filter(|text| self.warned.insert((*text).clone()));
+        new.for_each(output::warn);
+        if self.scene.is_none() {
+            let Settings { width, height, .. } = self.viewer.settings;
+            session::begin(&mut self.viewer, &stage);
+            let settings = &mut self.viewer.settings;
+            (settings.width, settings.height) = (width, height);
+        } else {
+            session::set(&mut self.viewer, &stage);
+        }
+        if let Some(warning) = stage.warnings.first() {
+            self.viewer.show_message(warning.clone());
+        }
+        self.scene = Some(Arc::clone(&stage.scene));
+        self.origin.clone_from(&stage.origin);
+        self.loaded.clone_from(&stage.content);
+        self.fallback = None;
+        self.workers.set(Box::new(stage));
+        for (number, line) in std::mem::take(&mut self.early) {
+            self.hear(Call::Line(number, line));
+        }
+    }
+
+    /// Shows an image to all pages.
+    fn show(&mut self, picture: Picture) {
+        let moving = self.viewer.is_dragging() && picture.samples == 0;
+        let now = Instant::now();
+        if let Some(before) = std::mem::replace(&mut self.moved, moving.then_some(now)) {
+            self.viewer.frame_rate.record_interval(now - before);
+        }
+        self.viewer.accept(picture);
+    }
+
+    /// Sends pages the image of the viewer, if it is another one.
+    fn send_image(&mut self) {
+        let Some(picture) = &self.viewer.shown else { return };
+        if self.last.as_ref().is_some_and(|shot| Arc::ptr_eq(&shot.picture, picture)) {
+            return;
+        }
+        let finished = picture.samples >= self.viewer.settings.spp;
+        let finished = finished.then(|| Saved::of(&self.viewer)).flatten();
+        self.shots += 1;
+        while self.versions.get(1).is_some_and(|(version, _)| *version <= picture.version) {
+            self.versions.pop_front();
+        }
+        let heard = self.versions.front().map_or(0, |(_, heard)| *heard);
+        let shot = Arc::new(Shot::new(Arc::clone(picture), self.shots, heard, finished));
+        self.clients.iter().for_each(|(_, client)| client.show(Arc::clone(&shot)));
+        self.last = Some(shot);
+    }
+
+    fn show_error(&mut self, failure: &Failure) {
+        let message = brief(failure);
+        output::warn(&message);
+        self.viewer.show_message(message);
+    }
+
+    /// Requests the next image, and tells pages what is new. Nothing is rendered that nobody sees.
+    fn update(&mut self) {
+        match self.versions.back_mut() {
+            Some((version, heard)) if *version == self.viewer.version => *heard = self.heard,
+            _ => self.versions.push_back((self.viewer.version, self.heard)),
+        }
+        if self.scene.is_some() {
+            let request = self.viewer.next_request().filter(|_| !self.clients.is_empty());
+            self.workers.request_image(request);
+        }
+        self.send_image();
+        let mut facts = state(&self.viewer);
+        facts["pages"] = json!(self.clients.len());
+        facts["busy"] = json!(self.is_loading());
+        let told = json!({ "state": facts }).to_string();
+        if told != self.told {
+            self.clients.iter().for_each(|(_, client)| client.state(told.clone()));
+            self.told = told;
+        }
+        if self.viewer.sampled().is_some() && !self.is_loading() {
+            for (number, suffix) in std::mem::take(&mut self.wanted) {
+                if let Err(message) = self.download(number, &suffix) {
+                    self.tell(number, &json!({ "error": message }).to_string());
+                }
+            }
+        }
+    }
+
+    /// Returns whether the content is not shown yet.
+    fn is_loading(&self) -> bool {
+        self.viewer.content != self.loaded
+    }
+
+    fn tell(&self, number: u64, text: &str) {
+        let client = self.clients.iter().find(|(own, _)| *own == number);
+        if let Some((_, client)) = client {
+            client.reply(Reply::Text(text.to_owned()));
+        }
+    }
+
+    fn tell_all(&self, text: &str) {
+        for (_, client) in &self.clients {
+            client.reply(Reply::Text(text.to_owned()));
+        }
+    }
+
+    /// Sends a page the image as a file, or with the suffix `toml` its scene; once there is one, if there is none yet.
+    fn download(&mut self, number: u64, suffix: &str) -> Result<(), String> {
+        let Some((_, client)) = self.clients.iter().find(|(own, _)| *own == number) else {
+            return Ok(());
+        };
+        let saved = Saved::of(&self.viewer).filter(|_| !self.is_loading());
+        let (Some(saved), Some(scene)) = (saved, &self.scene) else {
+            self.wanted.push((number, suffix.to_owned()));
+            return Ok(());
+        };
+        let (client, scene, origin) = (Arc::clone(client), Arc::clone(scene), self.origin.clone());
+        let suffix = suffix.to_owned();
+        let format = Format::of_suffix(Path::new(&format!("view.{suffix}")));
+        if suffix != "toml"
+            && let Err(error) = &format
+        {
+            return Err(error.to_string());
+        }
+        // Large scenes take seconds.
+        thread::spawn(move || {
+            let files = match format {
+                Ok(format) => encode_picture(&saved.seen(), format)
+                    .map(|file| vec![(format!("view.{suffix}"), file)]),
+                Err(_) => scene_files(&saved, &scene, origin.as_ref()),
+            };
+            match files {
+                Ok(files) => files.into_iter().for_each(|(name, file)| {
+                    client.reply(Reply::File(json!({ "file": name }).to_string(), file));
+                }),
+                Err(failure) => {
+                    client.reply(Reply::Text(json!({ "error": brief(&failure) }).to_string()));
+                }
+            }
+        });
+        Ok(())
+    }
+}
+
+/// Returns the files of a scene with their names.
+fn scene_files(
+    saved: &Saved,
+    scene: &RwLock<Scene>,
+    origin: Option<&Origin>,
+) -> Result<Vec<(String, Vec<u8>)>, Failure> {
+    let failed = |error| Failure::Write("view.toml".into(), error);
+    let folder = tempfile::tempdir().map_err(failed)?;
+    save_scene(&saved.seen(), scene, origin, &folder.path().join("view.toml"))?;
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder.path()).map_err(failed)? {
+        let entry = entry.map_err(failed)?;
+        let name = entry.file_name().to_string_lossy().into_owned();
+        files.push((name, std::fs::read(entry.path()).map_err(failed)?));
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// Returns a failure in one line.
+fn brief(failure: &Failure) -> String {
+    let text = match failure {
+        Failure::Scene(error) => format!("{}: {}", error.path.display(), error.message),
+        other => other.to_string(),
+    };
+    let line = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
+    line.strip_prefix("error: ").unwrap_or(line).to_owned()
+}

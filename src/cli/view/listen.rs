@@ -1,0 +1,131 @@
+//! The server of the page: connections, the page's files, and its WebSocket.
+
+use super::client::{Client, Ear, send};
+use super::http::{Door, Status, accept_socket, read_head, reply};
+use std::io;
+use std::net::{TcpListener, TcpStream};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::mpsc::SyncSender;
+use std::thread;
+use std::time::Duration;
+use tungstenite::protocol::{Message, Role, WebSocket, WebSocketConfig};
+
+/// Maximum number of connections.
+const MOST: usize = 64;
+
+/// Maximum length of a message from a page in bytes.
+const LONGEST: usize = 1 << 16;
+
+/// The page's files.
+const FILES: [(&str, &str, &str); 4] = [
+    ("", "text/html; charset=utf-8", include_str!("page/index.html")),
+    ("page.css", "text/css; charset=utf-8", include_str!("page/page.css")),
+    ("page.js", "text/javascript; charset=utf-8", include_str!("page/page.js")),
+    ("icon.svg", "image/svg+xml", include_str!("page/icon.svg")),
+];
+
+/// What pages do.
+pub(super) enum Call {
+    Joined(u64, Arc<Client>),
+    /// A page sent a command.
+    Line(u64, String),
+    Left(u64),
+}
+
+/// A connection's share of those that are allowed.
+struct Seat(Arc<AtomicUsize>);
+
+impl Drop for Seat {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+/// Accepts connections for ever.
+pub(super) fn serve<T: From<Call> + Send + 'static>(
+    listener: &TcpListener,
+    door: &Arc<Door>,
+    calls: &SyncSender<T>,
+) {
+    let (seats, next) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicU64::new(0)));
+    for stream in listener.incoming() {
+        let Ok(stream) = stream else {
+            // Too many open files, perhaps: others may close.
+            thread::sleep(Duration::from_millis(100));
+            continue;
+        };
+        let seat = Seat(Arc::clone(&seats));
+        if seats.fetch_add(1, Ordering::Relaxed) >= MOST {
+            continue;
+        }
+        let (door, calls, next) = (Arc::clone(door), calls.clone(), Arc::clone(&next));
+        let answer = move || {
+            let _seat = seat;
+            // A connection that is lost ends here.
+            let _ = answer(stream, &door, &calls, &next);
+        };
+        // Without a thread the connection is closed.
+        let _ = thread::Builder::new().spawn(answer);
+    }
+}
+
+fn answer<T: From<Call>>(
+    mut stream: TcpStream,
+    door: &Door,
+    calls: &SyncSender<T>,
+    next: &AtomicU64,
+) -> io::Result<()> {
+    stream.set_write_timeout(Some(Duration::from_secs(10)))?;
+    let head = match read_head(&mut stream) {
+        Ok(head) => head,
+        Err(status) => return reply(&mut stream, status, "text/plain", b""),
+    };
+    match (door.admit(&head), &head.key) {
+        (Err(status), _) => reply(&mut stream, status, "text/plain", b""),
+        (Ok("socket"), Some(key)) => {
+            accept_socket(&mut stream, key)?;
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            converse(stream, number, calls)
+        }
+        (Ok(path), _) => match FILES.iter().find(|(name, ..)| *name == path) {
+            Some((_, kind, text)) => reply(&mut stream, Status::Ok, kind, text.as_bytes()),
+            None => reply(&mut stream, Status::NotFound, "text/plain", b""),
+        },
+    }
+}
+
+/// Reads what a page sends, until it leaves.
+fn converse<T: From<Call>>(
+    stream: TcpStream,
+    number: u64,
+    calls: &SyncSender<T>,
+) -> io::Result<()> {
+    stream.set_read_timeout(None)?;
+    let client = Arc::new(Client::default());
+    let (writer, own) = (stream.try_clone()?, Arc::clone(&client));
+    let sender = thread::Builder::new().spawn(move || send(&writer, &own))?;
+    let config =
+        WebSocketConfig::default().max_message_size(Some(LONGEST)).max_frame_size(Some(LONGEST));
+    let ear = Ear { stream, client: Arc::clone(&client) };
+    let mut socket = WebSocket::from_raw_socket(ear, Role::Server, Some(config));
+    let call = |call| calls.send(T::from(call)).is_ok();
+    let mut goes_on = call(Call::Joined(number, Arc::clone(&client)));
+    while goes_on {
+        goes_on = match socket.read() {
+            Ok(Message::Text(text)) => match text.strip_prefix("shown ") {
+                Some(shown) => {
+                    shown.parse().into_iter().for_each(|shown| client.shown(shown));
+                    true
+                }
+                None => call(Call::Line(number, text.to_string())),
+            },
+            Ok(Message::Ping(_) | Message::Pong(_)) => true,
+            Ok(_) | Err(_) => false,
+        };
+    }
+    client.close();
+    call(Call::Left(number));
+    let _ = sender.join();
+    Ok(())
+}

@@ -1,0 +1,304 @@
+//! The page of the viewer: its server, its protocol, and what bad clients get.
+
+use crate::folder::Folder;
+use crate::process::{Process, wait_for};
+use serde_json::Value;
+use spherule_render::image::Image;
+use std::fs::{File, read_to_string};
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::time::Duration;
+use tungstenite::client::IntoClientRequest;
+use tungstenite::{Message, WebSocket};
+
+/// Time limit of everything that comes over a connection.
+const LIMIT: Duration = Duration::from_secs(60);
+
+const SALT: &str = "\
+4
+Properties=species:S:1:pos:R:3:q:R:1
+Na 0 0 0 1
+Cl 3 0 0 -1
+Cl 0 3 0 -2
+K 0 0 3 1
+";
+
+/// A running viewer.
+struct Server {
+    process: Process,
+    /// `127.0.0.1:PORT`.
+    host: String,
+    token: String,
+}
+
+impl Server {
+    fn start(folder: &Folder, args: &[&str]) -> Self {
+        let file = File::create(folder.path("address.txt")).expect("a file");
+        let mut command = folder.command(&[&["view", "--no-browser"], args].concat());
+        let process = Process::start(command.stdout(file));
+        let read = || read_to_string(folder.path("address.txt")).expect("a file");
+        wait_for("the address", || read().ends_with('\n'));
+        let text = read();
+        let (host, token) = text
+            .trim()
+            .strip_prefix("http://")
+            .and_then(|rest| rest.trim_end_matches('/').split_once('/'))
+            .expect("an address");
+        Self { process, host: host.to_owned(), token: token.to_owned() }
+    }
+
+    fn connect(&self) -> TcpStream {
+        let stream = TcpStream::connect(&self.host).expect("a connection");
+        stream.set_read_timeout(Some(LIMIT)).expect("a limit");
+        stream
+    }
+
+    /// Sends a request, and returns the status and the content.
+    fn get(&self, path: &str, host: &str, more: &str) -> (u16, String) {
+        let mut stream = self.connect();
+        write!(stream, "GET {path} HTTP/1.1\r\nHost: {host}\r\n{more}\r\n").expect("a request");
+        let mut reply = String::new();
+        stream.read_to_string(&mut reply).expect("a reply");
+        let status = reply.split(' ').nth(1).and_then(|code| code.parse().ok()).expect("a status");
+        let content = reply.split_once("\r\n\r\n").map(|(_, content)| content.to_owned());
+        (status, content.unwrap_or_default())
+    }
+
+    /// Opens the page's socket.
+    fn page(&self) -> Page {
+        let address = format!("ws://{}/{}/socket", self.host, self.token);
+        let request = address.into_client_request().expect("a request");
+        let (socket, _) = tungstenite::client(request, self.connect()).expect("a socket");
+        Page { socket, state: Value::Null, errors: Vec::new() }
+    }
+}
+
+/// A page that reads what comes.
+struct Page {
+    socket: WebSocket<TcpStream>,
+    state: Value,
+    errors: Vec<String>,
+}
+
+/// An image as it comes: its header and files.
+struct Sent {
+    header: Value,
+    files: Vec<Vec<u8>>,
+}
+
+impl Page {
+    fn send(&mut self, line: &str) {
+        self.socket.send(Message::text(line)).expect("a message");
+    }
+
+    /// Reads a message, and acknowledges it if it is an image.
+    fn read(&mut self) -> Option<Sent> {
+        let read = self.socket.read();
+        match read.unwrap_or_else(|error| panic!("{error}: {:?}", self.errors)) {
+            Message::Text(text) => {
+                let message: Value = serde_json::from_str(&text).expect("JSON");
+                if !message["state"].is_null() {
+                    self.state = message["state"].clone();
+                }
+                self.errors.extend(message["error"].as_str().map(str::to_owned));
+                None
+            }
+            Message::Binary(bytes) => {
+                let (length, rest) = bytes.split_at(4);
+                let length = u32::from_le_bytes(length.try_into().expect("four bytes")) as usize;
+                let header: Value = serde_json::from_slice(&rest[..length]).expect("JSON");
+                if let Some(number) = header["picture"].as_u64() {
+                    self.send(&format!("shown {number}"));
+                }
+                let mut start = length;
+                let empty = Vec::new();
+                let tiles = header["tiles"].as_array().unwrap_or(&empty);
+                let mut files: Vec<Vec<u8>> = tiles
+                    .iter()
+                    .map(|tile| {
+                        let size = tile[4].as_u64().expect("a size") as usize;
+                        start += size;
+                        rest[start - size..start].to_vec()
+                    })
+                    .collect();
+                if files.is_empty() {
+                    files.push(rest[start..].to_vec());
+                }
+                Some(Sent { header, files })
+            }
+            _ => None,
+        }
+    }
+
+    /// Reads until an image has a property.
+    fn image(&mut self, is_wanted: impl Fn(&Value) -> bool) -> Sent {
+        loop {
+            if let Some(sent) = self.read().filter(|sent| is_wanted(&sent.header)) {
+                return sent;
+            }
+        }
+    }
+
+    /// Reads until the state has a property.
+    fn until(&mut self, is_wanted: impl Fn(&Value) -> bool) {
+        while !is_wanted(&self.state) {
+            self.read();
+        }
+    }
+
+    /// Reads until a command is refused, and returns why.
+    fn error(&mut self) -> String {
+        while self.errors.is_empty() {
+            self.read();
+        }
+        self.errors.remove(0)
+    }
+}
+
+fn is_finished(header: &Value) -> bool {
+    header["finished"] == true
+}
+
+#[test]
+fn the_page_is_served_with_its_token_alone() {
+    let folder = Folder::new();
+    let server = Server::start(&folder, &[]);
+    let Server { host, token, .. } = &server;
+    let (status, page) = server.get(&format!("/{token}/"), host, "");
+    assert!(status == 200 && page.contains("page.js"), "{status}");
+    for name in ["page.css", "page.js", "icon.svg"] {
+        assert_eq!(server.get(&format!("/{token}/{name}"), host, "").0, 200, "{name}");
+    }
+    let port = host.rsplit_once(':').expect("a port").1;
+    assert_eq!(server.get(&format!("/{token}/"), &format!("localhost:{port}"), "").0, 200);
+    for (path, name, more) in [
+        ("/", host.as_str(), ""),
+        ("/0123456789abcdef0123456789abcdef/", host, ""),
+        (&format!("/{token}/"), "evil.example", ""),
+        (&format!("/{token}/"), host, "Origin: http://evil.example\r\n"),
+    ] {
+        assert_eq!(server.get(path, name, more), (403, String::new()), "{path} {name}");
+    }
+    for path in ["../Cargo.toml", "etc/passwd", "%2e%2e/", "socket"] {
+        assert_eq!(server.get(&format!("/{token}/{path}"), host, "").0, 404, "{path}");
+    }
+}
+
+#[test]
+fn the_finished_image_is_the_file_of_the_command_line() {
+    let folder = Folder::new();
+    folder.write("salt.xyz", SALT);
+    let server = Server::start(&folder, &["salt.xyz", "--radii", "1", "--spp", "3"]);
+    let mut page = server.page();
+    page.send("size 64x48");
+    page.send("drag 10,10 40,20 steps=3");
+    page.send("set color-by q");
+    page.send("hide K");
+    page.send("download png");
+    let file = page.image(|header| header["file"] == "view.png").files.remove(0);
+    page.until(|state| state["busy"] == false && state["hidden"][0] == "K");
+    let line = page.state["command"].as_str().expect("a command").to_owned();
+    let words = shlex::split(&line).expect("words");
+    let words: Vec<&str> = words.iter().skip(1).map(String::as_str).collect();
+    folder.succeed(&[&words[..], &["--quiet"]].concat());
+    std::fs::write(folder.path("page.png"), &file).expect("a file");
+    let read = |name: &str| Image::read(folder.path(name)).expect("a picture");
+    assert!(read("view.png") == read("page.png"), "{line}");
+}
+
+#[test]
+fn commands_change_the_view_and_bad_ones_are_refused() {
+    let folder = Folder::new();
+    folder.write("salt.xyz", SALT);
+    let server = Server::start(&folder, &["salt.xyz", "--spp", "2"]);
+    let mut page = server.page();
+    page.send("size 40x30");
+    page.until(|state| state["spheres"] == 4 && state["loading"].is_null());
+    page.send("set select 'q < 0'");
+    page.until(|state| state["spheres"] == 2);
+    page.send("undo");
+    page.until(|state| state["spheres"] == 4 && state["redo"] == true);
+    for line in [
+        "set select 'q <'",
+        "set output /tmp/x.png",
+        "set topology /etc/passwd",
+        "set camera /etc/passwd",
+        "set color-bar /tmp/x.svg",
+        "set model cubes",
+        "nonsense",
+        "drag",
+        "'",
+    ] {
+        page.send(line);
+        assert!(!page.error().is_empty(), "{line}");
+    }
+    // What the file has not is found while it is loaded.
+    page.send("set color-by nothing");
+    page.until(|state| state["message"].as_str().is_some_and(|text| text.contains("nothing")));
+    page.until(|state| state["options"]["color-by"].is_null());
+    page.send("save /tmp/x.png");
+    page.send("hover 20,15");
+    page.send("set color-by q");
+    page.until(|state| !state["legend"].is_null());
+    assert!(page.errors.is_empty(), "{:?}", page.errors);
+}
+
+#[test]
+fn one_page_steers_and_others_look() {
+    let folder = Folder::new();
+    let server = Server::start(&folder, &["--spp", "1"]);
+    let (mut first, mut second) = (server.page(), server.page());
+    first.send("size 40x30");
+    let sent = first.image(|header| is_finished(header) && header["width"] == 40);
+    assert_eq!(sent.header["kind"], "image/png");
+    second.image(|header| header["width"] == 40);
+    second.send("key 5");
+    assert!(second.error().contains("steers"));
+    second.send("steer");
+    second.send("size 48x30");
+    second.image(|header| header["width"] == 48);
+    first.send("key 5");
+    assert!(first.error().contains("steers"));
+    drop(second);
+    first.until(|state| state["pages"] == 1);
+    first.send("size 52x30");
+    first.image(|header| header["width"] == 52);
+}
+
+#[test]
+fn bad_clients_cost_nothing() {
+    let folder = Folder::new();
+    let mut server = Server::start(&folder, &["--spp", "1"]);
+    let mut held = Vec::new();
+    let head = vec![b'a'; 20_000];
+    for round in 0..40 {
+        let mut stream = server.connect();
+        // Half open, garbage, a head without an end, and one of a socket that sends no frames.
+        let sent: &[u8] = match round % 4 {
+            0 => b"",
+            1 => b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n\r\n",
+            2 => &head,
+            _ => b"GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\n\r\n",
+        };
+        // It may be closed while it sends.
+        let _ = stream.write_all(sent);
+        if round % 2 == 0 {
+            held.push(stream);
+        }
+    }
+    let mut silent = server.page();
+    silent.send("size 640x480");
+    // It reads nothing, and floods.
+    for _ in 0..2000 {
+        silent.send("turn 1 0");
+    }
+    let mut long = server.page();
+    // Longer than any command: the connection is closed.
+    let _ = long.socket.send(Message::text("x".repeat(1 << 20)));
+    while long.socket.read().is_ok() {}
+    let mut page = server.page();
+    page.send("steer");
+    page.send("size 40x30");
+    page.image(|header| header["width"] == 40);
+    assert!(server.process.status().is_none(), "it runs");
+}
