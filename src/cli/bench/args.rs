@@ -70,9 +70,9 @@ pub(super) struct Common {
     /// Scenes [default: those of the benchmark]
     #[arg(long, value_name = "NAME", num_args = 1..)]
     scenes: Vec<String>,
-    /// Number of runs of each candidate
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = value_parser!(u32).range(1..=1000))]
-    rounds: u32,
+    /// Number of runs of each candidate [default: 5, with --quick: 2]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=1000))]
+    rounds: Option<u32>,
     /// Number of threads [default: as the CPU affinity mask and the cgroup's quota allow]
     #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(THREADS))]
     pub(super) threads: Option<u16>,
@@ -128,7 +128,7 @@ impl Common {
             (_, true) => Effort::Full,
             _ => Effort::Usual,
         };
-        let rounds = if self.quick { self.rounds.min(2) } else { self.rounds };
+        let rounds = self.rounds.unwrap_or(if self.quick { 2 } else { 5 });
         let threads = threads::count(self.threads);
         let references = Some(self.output.join("references"));
         let scale = Scale::default();
@@ -213,3 +213,27 @@ const EVERYTHING: &str = "\
 Examples:
   spherule bench all
   spherule bench all --rounds 9 --output measured";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Own {
+        #[command(flatten)]
+        common: Common,
+    }
+
+    #[test]
+    fn the_number_of_rounds_that_is_given_counts() {
+        for (arguments, expected) in [
+            (&["bench"][..], 5),
+            (&["bench", "--quick"], 2),
+            (&["bench", "--quick", "--rounds", "3"], 3),
+            (&["bench", "--full", "--rounds", "1"], 1),
+        ] {
+            assert_eq!(Own::parse_from(arguments).common.options().rounds, expected);
+        }
+    }
+}
