@@ -176,5 +176,6 @@ fn a_dash_is_standard_input() {
     let folder = Folder::new();
     let output = run_with_input(&mut folder.command(&["info", "-", "--frame", "last"]), frames);
     assert!(output.status.success(), "{}", text(&output.stderr));
-    assert!(text(&output.stdout).contains("type         O (O): 1"), "{}", text(&output.stdout));
+    let types = "type         O (O by symbol): 1";
+    assert!(text(&output.stdout).contains(types), "{}", text(&output.stdout));
 }

@@ -38,7 +38,8 @@ fn info_describes_files() {
     assert_eq!((&particles["frames"], &particles["step"]), (&json!(2), &json!(100)));
     assert_eq!(particles["columns"], json!(["id", "type", "x", "y", "z", "size"]));
     assert_eq!(particles["cell"]["periodic"], json!([true, true, false]));
-    assert_eq!(particles["types"][1], json!({"name": "2", "element": null, "spheres": 1}));
+    let second = json!({"name": "2", "element": null, "element_from": null, "spheres": 1});
+    assert_eq!(particles["types"][1], second);
     assert_eq!(info["spheres"], json!(2));
     let lines = folder.succeed(&["info", "run.dump"]);
     assert!(lines.contains("frames       2") && lines.contains("cell         [2.0, 0.0, 0.0]"));
@@ -148,7 +149,8 @@ fn topologies_name_the_particles_of_trajectories() {
     let info = folder.json(&[&["info", &trajectory[..], "--json"][..], &args].concat());
     let particles = &info["particles"];
     assert_eq!((&particles["format"], &particles["step"]), (&json!("xtc"), &json!(3)));
-    assert_eq!(particles["types"][0], json!({"name": "OW", "element": "O", "spheres": 60}));
+    let oxygen = json!({"name": "OW", "element": "O", "element_from": "name", "spheres": 60});
+    assert_eq!(particles["types"][0], oxygen);
     let render =
         |more: &[&str]| folder.run(&[&SMALL, &[&trajectory[..]][..], &args, more].concat());
     assert!(render(&["-o", "a.png"]).status.success());

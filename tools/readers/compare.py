@@ -188,6 +188,7 @@ def programs(file, format):
         "bcif": [by_biotite],
         "rst7": [by_mdanalysis_restart],
         "ase": [by_ase_trajectory],
+        "namd": [by_mdanalysis_coordinates],
     }[format]
 
 
@@ -381,6 +382,12 @@ def by_mdanalysis_restart(file):
     return answer(f"MDAnalysis {MDAnalysis.__version__}", frame.positions, edges_of(lengths), 1)
 
 
+def by_mdanalysis_coordinates(file):
+    import MDAnalysis
+    from MDAnalysis.coordinates.NAMDBIN import NAMDBINReader
+    return answer(f"MDAnalysis {MDAnalysis.__version__}", NAMDBINReader(str(file)).ts.positions)
+
+
 def by_ase_trajectory(file):
     import ase.io
     last = ase.io.read(file, index=-1)
@@ -478,7 +485,7 @@ FORMATS = {".h5md": "hdf5", ".h5": "hdf5", ".hdf5": "hdf5", ".nc": "hdf5", ".dcd
            ".mol2": "mol2",
            ".extxyz": "xyz", ".xyz": "xyz", ".data": "lammps-data", ".lammpstrj": "lammps-dump", ".gro": "gro", ".pdb": "pdb",
            ".gsd": "gsd", ".ply": "ply", ".npy": "npy", ".npz": "npz", ".csv": "csv", ".txt": "xyzr", ".cif": "cif",
-           ".bcif": "bcif", ".rst7": "rst7", ".traj": "ase", ".yaml": "lammps-dump"}
+           ".bcif": "bcif", ".rst7": "rst7", ".traj": "ase", ".coor": "namd", ".yaml": "lammps-dump"}
 
 
 def write_answers():

@@ -71,6 +71,7 @@ def main():
     proteins()
     binary()
     amber()
+    namd()
     ase_trajectory()
     space_groups()
 
@@ -225,6 +226,16 @@ def amber():
     file.velocities = np.full((len(atoms), 3), 0.25)
     file.box = atoms.cell.cellpar()
     file.close()
+
+
+def namd():
+    """Binary coordinates."""
+    import MDAnalysis
+    from MDAnalysis.coordinates.NAMDBIN import NAMDBINWriter
+    atoms = MDAnalysis.Universe.empty(len(water()), trajectory=True).atoms
+    atoms.positions = water().positions
+    with NAMDBINWriter(str(OUT / "water.coor"), len(atoms)) as file:
+        file.write(atoms)
 
 
 def ase_trajectory():

@@ -1,12 +1,13 @@
 //! Reads trajectories of ASE (`.traj`), which are files of its container Ulm: a table of offsets, and for each frame
 //! a description in JSON that says where its arrays are (wiki.fysik.dtu.dk/ase/ase/io/ulm.html).
 
-use crate::binary::{BinaryFile, Numbers};
+use crate::arrays::{RowLayout, UsedArrays};
+use crate::binary::BinaryFile;
 use crate::scalar::{Order, Scalar};
-use crate::schema::{Schema, Slot};
+use crate::schema::Schema;
 use crate::{
-    Cell, Element, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
-    frame_reader::FrameReader, options::component_names, source::Source,
+    Cell, Element, ElementSource, FileError, Format, LengthUnit, ParticleFrame, ReadOptions,
+    builder::Builder, frame_reader::FrameReader, options::component_names, source::Source,
 };
 use glam::DVec3;
 use serde_json::{Map, Value};
@@ -169,7 +170,7 @@ fn cell(description: &Map<String, Value>, periodic: [bool; 3]) -> Option<Cell> {
     };
     let edges: Option<Vec<DVec3>> = rows.iter().map(edge).collect();
     let vectors = edges?.try_into().ok()?;
-    Cell { origin: DVec3::ZERO, vectors, periodic }.checked()
+    Cell { origin: DVec3::ZERO, vectors, periodic }.declared()
 }
 
 impl FrameReader for Trajectory {
@@ -215,26 +216,16 @@ impl FrameReader for Trajectory {
         let names = kinds.iter().map(|_| "element".to_owned()).chain(names).collect();
         let schema = Schema::new(names, &self.options);
         let schema = Arc::new(schema.map_err(|message| self.file.fault(message))?);
-        // Only arrays whose columns are used are read.
-        let mut blocks = Vec::new();
-        let (kind, mut slots) = schema.slots.split_at(usize::from(kinds.is_some()));
+        let (kind, slots) = schema.slots.split_at(usize::from(kinds.is_some()));
+        let mut used = UsedArrays::new(slots);
         for array in &arrays {
-            let (own, rest) = slots.split_at((array.width as usize).min(slots.len()));
-            slots = rest;
-            if own.iter().any(|slot| *slot != Slot::Skip) {
-                blocks.push((own, array, self.values(array)?));
-            }
+            let &Array { scalar, order, width, .. } = array;
+            let layout = RowLayout { scalar, order, width: width as usize, scale: 1.0 };
+            used.add(layout, || self.values(array))?;
         }
         let mut builder = Builder::new(self.file.path(), Format::AseTrajectory, &schema);
         for atom in 0..atoms as usize {
-            for (slots, array, bytes) in &blocks {
-                let size = array.scalar.size();
-                let row = bytes.get(atom * size * array.width as usize..).unwrap_or_default();
-                let mut row = Numbers::new(row, array.order);
-                for &slot in *slots {
-                    builder.put_number(slot, row.scalar(array.scalar).unwrap_or(f64::NAN));
-                }
-            }
+            used.put_row(&mut builder, atom);
             if let Some((bytes, array)) = &kinds {
                 let bytes = bytes.get(atom * array.scalar.size()..).unwrap_or_default();
                 let number = array.scalar.read(bytes, array.order).max(0.0);
@@ -246,7 +237,9 @@ impl FrameReader for Trajectory {
         let cell = cell(&own, periodic);
         self.first = Some(first);
         self.next += 1;
-        let frame = builder.finish();
+        let mut frame = builder.finish();
+        // The symbols are those of the numbers in the file.
+        frame.kinds.table.iter_mut().for_each(|kind| kind.source = ElementSource::Number);
         Ok(Some(ParticleFrame { cell, unit: LengthUnit::Angstrom, ..frame }))
     }
 

@@ -2,6 +2,7 @@
 
 use super::element::Element;
 use std::collections::HashMap;
+use std::hash::{Hash, Hasher};
 
 /// Indices into a table of names, in the narrowest type that holds them.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -124,16 +125,72 @@ impl RowChange<'_> {
     }
 }
 
-/// A type of particles: its name and element.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+/// A type of particles: its name and element. Types are equal if they are named and drawn alike, from wherever their
+/// elements are known.
+#[derive(Clone, Debug, Default)]
 pub struct Kind {
     /// Name in the file: a symbol, an atom name, or a type's name or number.
     pub name: String,
     /// The element, if the file declares it or the name implies it.
     pub element: Option<Element>,
+    /// Where the element is known from; meaningless without one.
+    pub source: ElementSource,
     /// True for a virtual site of a water model, with a charge or mass but no atom (`MW`, `M`, `EP`,
     /// `LP`), which is not drawn.
     pub virtual_site: bool,
+}
+
+impl Kind {
+    /// Returns all that types differ by.
+    fn identity(&self) -> (&str, Option<Element>, bool) {
+        (&self.name, self.element, self.virtual_site)
+    }
+}
+
+impl PartialEq for Kind {
+    fn eq(&self, other: &Self) -> bool {
+        self.identity() == other.identity()
+    }
+}
+
+impl Eq for Kind {}
+
+impl Hash for Kind {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.identity().hash(state);
+    }
+}
+
+/// The facts of a file from which an element is known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ElementSource {
+    /// Its symbol.
+    #[default]
+    Symbol,
+    /// Its atomic number.
+    Number,
+    /// The names of the atom and of its residue.
+    Name,
+    /// The name of a type: of a force field, or one that happens to be a symbol.
+    Type,
+    /// The mass.
+    Mass,
+    /// None: the user said so.
+    Given,
+}
+
+impl ElementSource {
+    /// Returns the name of what the element is known from.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Symbol => "symbol",
+            Self::Number => "atomic number",
+            Self::Name => "name",
+            Self::Type => "type",
+            Self::Mass => "mass",
+            Self::Given => "given",
+        }
+    }
 }
 
 /// Types of particles: row `i` of `codes` is the index of particle `i`'s type in `table`.

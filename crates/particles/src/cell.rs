@@ -21,8 +21,12 @@ impl Cell {
     }
 
     /// Returns a cell with edges of these lengths and angles in degrees, in the crystallographic
-    /// convention: the first edge along x, the second in the x-y plane. `None` if there is no such cell.
+    /// convention: the first edge along x, the second in the x-y plane. `None` if numbers are missing or no edge has a length; where
+    /// no cell has such angles, edges are NaN.
     pub(crate) fn of_lengths(lengths: [f64; 3], angles: [f64; 3]) -> Option<Self> {
+        if lengths == [0.0; 3] || !lengths.iter().chain(&angles).all(|number| number.is_finite()) {
+            return None;
+        }
         let [a, b, c] = lengths;
         // Right angles are exact, and those of an edge without length mean nothing.
         let cosine = |angle: usize| {
@@ -39,8 +43,15 @@ impl Cell {
             DVec3::new(b * gamma, b * sine, 0.0),
             DVec3::new(c * beta, c * tilt, c * height),
         ];
-        let cell = Self { origin: DVec3::ZERO, vectors, periodic: [true; 3] };
-        cell.checked()
+        Some(Self { origin: DVec3::ZERO, vectors, periodic: [true; 3] }.thickened())
+    }
+
+    /// Returns the cell that a file declares, [thickened](Self::thickened); `None` if a number is missing or no edge has a length. It
+    /// may lack a volume: [`reader`](crate::reader) tells.
+    pub(crate) fn declared(self) -> Option<Self> {
+        let [a, b, c] = self.vectors;
+        let finite = [a, b, c, self.origin].iter().all(|vector| vector.is_finite());
+        (finite && self.vectors != [DVec3::ZERO; 3]).then(|| self.thickened())
     }
 
     /// Returns the cell, [thickened](Self::thickened), if it is finite and then has a volume.
@@ -142,13 +153,12 @@ mod tests {
         let box_shaped = Cell::of_lengths([2.0, 3.0, 4.0], [90.0; 3]).expect("a cell");
         assert_eq!(box_shaped.vectors, [DVec3::X * 2.0, DVec3::Y * 3.0, DVec3::Z * 4.0]);
         assert_eq!(box_shaped.cartesian([0.5, 1.0, 0.25]), DVec3::new(1.0, 3.0, 1.0));
-        for (lengths, angles) in [
-            ([0.0; 3], [90.0; 3]),
-            ([1.0; 3], [0.0; 3]),
-            ([1.0; 3], [150.0, 150.0, 150.0]),
-            ([f64::NAN, 1.0, 1.0], [90.0; 3]),
-        ] {
+        for (lengths, angles) in [([0.0; 3], [90.0; 3]), ([f64::NAN, 1.0, 1.0], [90.0; 3])] {
             assert_eq!(Cell::of_lengths(lengths, angles), None, "{lengths:?} {angles:?}");
+        }
+        for angles in [[0.0; 3], [150.0; 3]] {
+            let cell = Cell::of_lengths([1.0; 3], angles).expect("a declared cell");
+            assert_eq!(cell.with_volume(), None, "{angles:?}");
         }
         for angles in [[90.0; 3], [0.0, 0.0, 90.0]] {
             let layer = Cell::of_lengths([2.0, 3.0, 0.0], angles).expect("a cell");

@@ -61,8 +61,7 @@ impl Cfg {
         };
         let mut begun = false;
         while let Some(line) = self.lines.next()? {
-            let text =
-                line.bytes.split(|&byte| byte == b'#').next().unwrap_or_default().trim_ascii();
+            let text = line.without_comment(b"#").bytes.trim_ascii();
             begun |= text.starts_with(FIRST);
             if text.is_empty() || !begun {
                 continue;
@@ -127,6 +126,7 @@ impl FrameReader for Cfg {
             // In extended files, masses and symbols have lines of their own, before the atoms that they are of.
             let (line, skip) = loop {
                 let line = self.lines.row(atom, header.count, "atoms", "the file is cut off")?;
+                let line = line.without_comment(b"#");
                 let mut fields = line.fields();
                 let (first, second) = (fields.next().unwrap_or_default(), fields.next());
                 match (header.entries, second) {

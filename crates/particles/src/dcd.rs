@@ -14,6 +14,9 @@ use std::sync::Arc;
 /// Length of the first record.
 const HEADER: u64 = 84;
 
+/// Length of a line of the title.
+const TITLE: u64 = 80;
+
 /// Length of a record with a cell.
 const CELL: u64 = 48;
 
@@ -122,7 +125,7 @@ impl Dcd {
         self.has_fourth = is_charmm && words[HAS_FOURTH] != 0;
         (self.start, self.interval) = (words[START], words[INTERVAL]);
         let mut at = self.layout.record(HEADER);
-        at += self.layout.record(self.record(at, None)?.len() as u64);
+        at += self.layout.record(self.title(at)?);
         let count = self.record(at, Some(4))?;
         let count = Numbers::new(&count, self.layout.order).count();
         self.atoms = count.ok_or_else(|| self.file.fault("has a negative number of atoms"))?;
@@ -150,17 +153,36 @@ impl Dcd {
         Ok(())
     }
 
-    /// Reads the record at an offset; checks its length.
-    fn record(&mut self, at: u64, length: Option<u64>) -> Result<Vec<u8>, FileError> {
+    /// Returns the length of the record of the title. Some writers claim two lines in it, whatever their number, so what is
+    /// after the record must claim the same.
+    fn title(&mut self, at: u64) -> Result<u64, FileError> {
+        let title = self.record(at, None)?;
+        let claimed = title.len() as u64;
+        let lines = Numbers::new(&title, self.layout.order).count().unwrap_or(0);
+        let counted = lines.saturating_mul(TITLE).saturating_add(4);
+        let mut ends_after = |length: u64| {
+            let end = at.saturating_add(self.layout.marker).saturating_add(length);
+            self.marker(end).is_ok_and(|after| after == claimed)
+        };
+        Ok(if !ends_after(claimed) && ends_after(counted) { counted } else { claimed })
+    }
+
+    /// Returns the length of a record that stands before or after it.
+    fn marker(&mut self, at: u64) -> Result<u64, FileError> {
         let Layout { order, marker } = self.layout;
         let scalar = if marker == 8 { Scalar::U64 } else { Scalar::U32 };
-        let claimed = scalar.read(&self.file.bytes(at, marker)?, order) as u64;
+        Ok(scalar.read(&self.file.bytes(at, marker)?, order) as u64)
+    }
+
+    /// Reads the record at an offset; checks its length.
+    fn record(&mut self, at: u64, length: Option<u64>) -> Result<Vec<u8>, FileError> {
+        let claimed = self.marker(at)?;
         if let Some(length) = length.filter(|&length| length != claimed) {
             let message =
                 format!("is damaged: a record of {claimed} bytes at byte {at}, not {length}");
             return Err(self.file.fault(message).with_help("copy the file again"));
         }
-        self.file.bytes(at.saturating_add(marker), claimed)
+        self.file.bytes(at.saturating_add(self.layout.marker), claimed)
     }
 
     /// Returns the number of atoms that a frame stores.
@@ -256,8 +278,9 @@ fn cell(numbers: [f64; 6], version: i64) -> Option<Cell> {
     let cosines = angles.iter().all(|cosine| cosine.abs() <= 1.0) && !is_matrix;
     // Right angles are exact.
     let degrees = |cosine: f64| if cosine == 0.0 { 90.0 } else { libm::acos(cosine).to_degrees() };
-    let of_cosines = || Cell::of_lengths([a, b, c], angles.map(degrees));
-    let matrix = || Cell { origin: DVec3::ZERO, vectors, periodic: [true; 3] }.checked();
+    let of_cosines =
+        || Cell::of_lengths([a, b, c], angles.map(degrees)).and_then(Cell::with_volume);
+    let matrix = || Cell { origin: DVec3::ZERO, vectors, periodic: [true; 3] }.declared();
     if cosines { of_cosines().or_else(matrix) } else { matrix() }
 }
 

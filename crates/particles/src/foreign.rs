@@ -37,7 +37,9 @@ struct Head<'a> {
 /// extension.
 const TRAJECTORY: &str = "convert it: gmx trjconv -f {file} -s topol.tpr -o {stem}.gro; or, without the file that names \
      its atoms: python3 -c \"import MDAnalysis; MDAnalysis.Universe('{file}', '{file}', \
-     topology_format='MINIMAL').atoms.write('{stem}.xyz', frames='all')\"";
+     topology_format='MINIMAL').atoms.write('{stem}.xyz', frames='all')\", which needs pytng";
+const TRZ: &str = "convert it together with the file that names its atoms: python3 -c \"import MDAnalysis; \
+     MDAnalysis.Universe('TOPOLOGY', '{file}').atoms.write('{stem}.xyz', frames='all')\"";
 const WITH_TOPOLOGY: &str = "convert it together with the file that names its atoms: python3 -c \"import MDAnalysis; \
      MDAnalysis.Universe('TOPOLOGY', '{file}', format='TRJ').atoms.write('{stem}.xyz', frames='all')\"";
 const ATOMS: &str = "convert it: python3 -c \"import MDAnalysis; MDAnalysis.Universe('{file}').atoms.write('{stem}.xyz')\"";
@@ -61,6 +63,11 @@ const JSON: &str = "write its positions as CSV: python3 -c \"import pandas; pand
 const RESTART: &str = "have LAMMPS write it as text: lmp -restart2data {file} {stem}.data";
 const DUMP: &str = "have LAMMPS' tool write it as text: binary2txt {file}";
 const CLOUD: &str = "write it as PLY: pdal translate {file} {stem}.ply";
+const BIOSYM: &str = "convert it: obabel -i car {file} -O {stem}.xyz";
+const NO_ATOMS: &str = "its positions are in the file of coordinates beside it: obabel -i car {stem}.car -O {stem}.xyz";
+const GROMACS: &str = "render the file of coordinates, such as conf.gro; for a --topology with charges and bonds, convert it: \
+     python3 -c \"import parmed; parmed.load_file('{file}').save('{stem}.psf')\"";
+const PART: &str = "render the file of coordinates, such as conf.gro";
 const CUBE: &str = "convert it: ase convert -i cube -o extxyz {file} {stem}.xyz";
 const MOLDEN: &str = "convert it: obabel -i molden {file} -O {stem}.xyz";
 const TINKER: &str = "convert it: obabel -i txyz {file} -O {stem}.sdf";
@@ -115,12 +122,22 @@ const FORMATS: &[(Sign, &str, &str)] = &[
     (Binary(is_spreadsheet), "a workbook of a spreadsheet", SHEET),
     (Binary(is_gadget), "a snapshot of Gadget", GADGET),
     (Bytes(40, &[b"GENERAL INFO\0"]), "a TNG trajectory of GROMACS", TRAJECTORY),
+    (Binary(is_trz), "a TRZ trajectory", TRZ),
+    (Bytes(8, &[b"VERSION "]), "a run input file of GROMACS (TPR)", ATOMS),
     (Binary(is_mmtf), "an MMTF file", MMTF),
     (Bytes(0, &[b"SQLite format 3\0"]), "a database, as DMS of Desmond is", ATOMS),
     (Words(&["title =", "title=", "variables =", "variables="]), "a Tecplot file", MESH),
     (Words(&["<!doctype html", "<html"]), "a web page (HTML)", PAGE),
     (Words(&["version https://git-lfs"]), "a pointer to a file that Git LFS keeps", LFS),
     (Words(&["[molden format]"]), "a Molden file", MOLDEN),
+    (Words(&["!biosym archive"]), "a file of Biosym (CAR or ARC)", BIOSYM),
+    (Words(&["!biosym molecular_data"]), "a topology of Biosym (MDF), without positions", NO_ATOMS),
+    (
+        Text(|t| is_gromacs(t.bytes) && has_section(t.bytes, &["system"])),
+        "a topology of GROMACS, without positions",
+        GROMACS,
+    ),
+    (Text(|t| is_gromacs(t.bytes)), "a part of a topology of GROMACS, without positions", PART),
     (
         Text(|t| t.first.starts_with(b"{") && has(t.bytes, "_m2io_version")),
         "a Maestro file",
@@ -129,7 +146,7 @@ const FORMATS: &[(Sign, &str, &str)] = &[
     (Words(&["{", "["]), "a JSON file", JSON),
     (Text(|t| t.first.eq_ignore_ascii_case(b"begin_scene")), "a scene of Tachyon", TACHYON),
     (Text(|t| t.is_markup(&["<VTKFile"])), "a VTK file (XML)", MESH),
-    (Text(|t| t.is_markup(&["<cml", "xml-cml"])), "a CML file", MOLECULES),
+    (Text(|t| t.is_markup(&["<cml", "xml-cml", "<atomArray"])), "a CML file", MOLECULES),
     (Words(&["<"]), "an XML file", XML),
     (Text(|text| is_cube(&text.lines)), "a cube file of Gaussian", CUBE),
     (Text(|text| is_mdcrd(&text.lines)), "a trajectory of Amber in text (mdcrd)", WITH_TOPOLOGY),
@@ -145,6 +162,20 @@ const FORMATS: &[(Sign, &str, &str)] = &[
 
 /// The head of ZIP archives, among them those of NumPy, which are read.
 const ZIP: &[u8] = b"PK\x03\x04";
+
+/// Sections of topologies of GROMACS, of which each file of them has one.
+const SECTIONS: [&str; 10] = [
+    "defaults",
+    "atomtypes",
+    "moleculetype",
+    "atoms",
+    "bonds",
+    "bondtypes",
+    "pairtypes",
+    "nonbond_params",
+    "position_restraints",
+    "system",
+];
 
 /// Number of lines from which text formats are detected.
 const LINES: usize = 64;
@@ -225,6 +256,35 @@ fn is_gadget(head: &[u8]) -> bool {
         word(0) == 256 && word(260) == 256
             || word(0) == 8 && has_at(head, 4, b"HEAD") && word(12) == 8
     })
+}
+
+/// Returns whether a file has records of Fortran of a title of 80 letters and of a number of 32 bits.
+fn is_trz(head: &[u8]) -> bool {
+    has_at(head, 0, &[80, 0, 0, 0]) && has_at(head, 84, &[80, 0, 0, 0, 4, 0, 0, 0])
+}
+
+/// Returns the lines of a topology of GROMACS that are no comments.
+fn gromacs_lines(head: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let lines = head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
+    lines.filter(|line| !line.is_empty() && !line.starts_with(b";"))
+}
+
+/// Returns whether the head of a topology of GROMACS has a section of any of these names.
+fn has_section(head: &[u8], names: &[&str]) -> bool {
+    gromacs_lines(head).any(|line| {
+        let section =
+            line.strip_prefix(b"[").and_then(|line| line.split(|&byte| byte == b']').next());
+        section.is_some_and(|own| names.iter().any(|name| own.trim_ascii() == name.as_bytes()))
+    })
+}
+
+/// Returns whether a text is a topology of GROMACS or a part of one: its first line that is no comment is for the preprocessor or
+/// begins a section, and there is a section of it, or files are included of its name's end.
+fn is_gromacs(head: &[u8]) -> bool {
+    let first = gromacs_lines(head).next().unwrap_or_default();
+    let starts = [&b"["[..], b"#include", b"#define", b"#if"];
+    starts.iter().any(|start| first.starts_with(start))
+        && (has_section(head, &SECTIONS) || has(head, ".itp\""))
 }
 
 /// Returns whether a file is a map of `MessagePack` with keys of MMTF.
@@ -366,6 +426,11 @@ mod tests {
             ),
             ([&[0; 40][..], b"GENERAL INFO\0", &[0; 60]].concat(), ["TNG", "trjconv -f run.bin"]),
             (b"\xDE\0\x26\xADgroupTypeList\0".to_vec(), ["MMTF", "get_structure('run.bin')"]),
+            (
+                [&[80, 0, 0, 0][..], &[b'a'; 80], &[80, 0, 0, 0, 4, 0, 0, 0, 10, 0, 0, 0]].concat(),
+                ["TRZ", "Universe('TOPOLOGY', 'run.bin')"],
+            ),
+            (b"\0\0\0\x0c\0\0\0\x0bVERSION 4.0\0".to_vec(), ["TPR", "Universe('run.bin')"]),
             (b"SQLite format 3\0".to_vec(), ["Desmond", "Universe('run.bin')"]),
             (b"PAR1\0\0".to_vec(), ["Parquet", "read_parquet('run.bin')"]),
             (b"spherule-prepared\n\0".to_vec(), ["prepared", "render run.bin -o run.png"]),
@@ -408,6 +473,12 @@ mod tests {
             ("# x\n\n%BLOCK LATTICE_CART\n5 0 0\n", ["CASTEP", "-i castep-cell"]),
             (&format!("title\n{0}\n{0}\n", "   1.000-100.000".repeat(5)), ["mdcrd", "TOPOLOGY"]),
             ("<html>", ["web page", "curl"]),
+            ("!BIOSYM archive 3\nPBC=OFF\n", ["CAR", "-i car in.txt"]),
+            ("!BIOSYM molecular_data 4\n", ["MDF", "-i car in.car"]),
+            ("; made up\n[ defaults ]\n1 2\n[ system ]\nwater\n", ["topology", "save('in.psf')"]),
+            ("#include \"amber99.ff/forcefield.itp\"\n", ["GROMACS", "conf.gro"]),
+            ("[ moleculetype ]\nSOL 2\n", ["part of a topology", "conf.gro"]),
+            ("<molecule id=\"m1\">\n<atomArray>\n", ["CML", "obabel in.txt"]),
         ] {
             let found = named(content.as_bytes(), "in.txt");
             assert!(words.iter().all(|word| found.contains(word)), "{words:?}: {found}");
@@ -512,6 +583,8 @@ mod tests {
             "a\nb\n0.5 1 2 3\n0.5 1 2 3\n0.5 1 2 3\n0.5 1 2 3\n1 2 3 4 5\n",
             "a\nb\n1 2 3 4\n1 2 3 4\n1 2 3 4\n1 2 3 4",
             "ANIMSTEPS x y\n1 2 3\n",
+            "; x y z\n1 2 3\n",
+            "#define a\n1 2 3\n",
             "v 1\nv 2\n",
         ] {
             assert_eq!(named(content.as_bytes(), "a.txt"), "", "{content}");

@@ -65,11 +65,13 @@ pub enum Format {
     AseTrajectory,
     /// BinaryCIF: mmCIF in MessagePack.
     BinaryCif,
+    /// Binary coordinates of NAMD.
+    Namd,
 }
 
 impl Format {
     /// All formats with their names in scene files and on the command line.
-    pub const ALL: [(&'static str, Self); 29] = [
+    pub const ALL: [(&'static str, Self); 30] = [
         ("xyzr", Self::Xyzr),
         ("csv", Self::Csv),
         ("xyz", Self::Xyz),
@@ -99,13 +101,20 @@ impl Format {
         ("rst7", Self::Restart),
         ("ase", Self::AseTrajectory),
         ("bcif", Self::BinaryCif),
+        ("namd", Self::Namd),
     ];
 
     /// Returns whether files of this format have positions alone, and a topology tells what they are of.
     pub(crate) fn lacks_names(self) -> bool {
         matches!(
             self,
-            Self::Dcd | Self::Xtc | Self::Trr | Self::NetCdf | Self::Hdf5 | Self::Restart
+            Self::Dcd
+                | Self::Xtc
+                | Self::Trr
+                | Self::NetCdf
+                | Self::Hdf5
+                | Self::Restart
+                | Self::Namd
         )
     }
 

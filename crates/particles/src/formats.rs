@@ -5,7 +5,7 @@ use crate::frame_reader::FrameReader;
 use crate::source::Source;
 use crate::{
     FileError, ReadOptions, amber, ase, cfg, cif, csv, dcd, gro, gromacs, gsd, hdf5, lammps, mol2,
-    molfile, netcdf, numpy, pdb, ply, poscar, pqr, psf, text, xsf, xyz,
+    molfile, namd, netcdf, numpy, pdb, ply, poscar, pqr, psf, text, xsf, xyz,
 };
 
 /// A test of the head of a file.
@@ -52,7 +52,7 @@ macro_rules! row {
 use Sign::{Signature, Structure, Words};
 
 /// All formats.
-pub(crate) const ROWS: [Row; 29] = [
+pub(crate) const ROWS: [Row; 30] = [
     row!(Xyzr, Words, &["xyzr"], |source, options| text::Rows::new(source, options)),
     row!(Csv, Words, &["csv", "tsv"], |source, options| csv::Csv::new(source, options)),
     row!(Xyz, Words, &["xyz", "extxyz"], |source, options| xyz::Xyz::new(source, options)),
@@ -123,6 +123,10 @@ pub(crate) const ROWS: [Row; 29] = [
         cif::decoded(source)?,
         options
     )),
+    // Last, since its sign is the vaguest.
+    row!(Namd, Signature(namd::is_coordinates), |source, options| namd::Coordinates::new(
+        source, options
+    )?),
 ];
 
 /// Returns the row of a format.

@@ -2,7 +2,7 @@
 //! (manual.gromacs.org/current/reference-manual/file-formats.html).
 
 use crate::lines::{Line, Lines};
-use crate::schema::{Naming, Schema, Slot};
+use crate::schema::{Schema, Slot};
 use crate::{
     Cell, FileError, Format, Kind, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
     fields::fixed, frame_reader::FrameReader, naming, number, source::Source,
@@ -35,12 +35,10 @@ pub(crate) struct Gro {
 
 impl Gro {
     pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
-        let schema = Schema::new(NAMES.map(str::to_owned).into(), options);
-        let named = |schema| Arc::new(Schema { naming: Naming::Names, ..schema });
         let is_velocity =
             |name: &&String| VELOCITIES.iter().any(|own| own.eq_ignore_ascii_case(name));
         let needed = options.columns.kept.iter().find(is_velocity).cloned();
-        Self { lines: Lines::new(source), schema: schema.map(named), needed }
+        Self { lines: Lines::new(source), schema: Schema::of_atoms(NAMES, options), needed }
     }
 
     /// Reads the title and the number of atoms; returns `None` at the end of the file.
@@ -173,7 +171,7 @@ fn cell(line: &Line) -> Result<Option<Cell>, FileError> {
     }
     let [ax, by, cz, ay, az, bx, bz, cx, cy] = values;
     let vectors = [DVec3::new(ax, ay, az), DVec3::new(bx, by, bz), DVec3::new(cx, cy, cz)];
-    Ok(Cell { origin: DVec3::ZERO, vectors, periodic: [true; 3] }.checked())
+    Ok(Cell { origin: DVec3::ZERO, vectors, periodic: [true; 3] }.declared())
 }
 
 impl FrameReader for Gro {

@@ -10,7 +10,7 @@
 //! XYZ and extended XYZ, LAMMPS dumps and data files, GRO, PDB, mmCIF, CIF of crystals with their
 //! symmetry, GSD, PLY, NPY and NPZ, tables and plain columns are recognized by their content, and so are the
 //! trajectories DCD, XTC, TRR, NetCDF and restart files of Amber, whose particles a topology names, POSCAR, XDATCAR,
-//! PQR, SDF, MOL2, XSF, CFG, BinaryCIF, trajectories of ASE, and HDF5 of H5MD, mdtraj and Gadget; topologies are
+//! PQR, SDF, MOL2, XSF, CFG, BinaryCIF, coordinates of NAMD, trajectories of ASE, and HDF5 of H5MD, mdtraj and Gadget; topologies are
 //! PSF, those of Amber, or any other file. Files may be compressed with gzip, bzip2, xz or zstd.
 //!
 //! Every reader streams: it stores columns, never the file, and doesn't allocate by counts in the file.
@@ -35,6 +35,7 @@
 mod aliases;
 mod alternates;
 mod amber;
+mod arrays;
 mod ase;
 mod binary;
 pub mod bonds;
@@ -69,6 +70,7 @@ mod memory;
 mod mesh;
 mod mol2;
 mod molfile;
+mod namd;
 mod naming;
 pub mod neighbors;
 mod netcdf;
@@ -99,6 +101,7 @@ mod topology;
 mod trails;
 mod undrawn;
 mod units;
+mod unplaced;
 mod utf16;
 mod xsf;
 mod xyz;
@@ -108,7 +111,7 @@ mod xyz;
 struct Readme;
 
 pub use bonds::{BondRules, BondSource, Bonds};
-pub use categories::{Codes, Kind, Kinds, TextColumn};
+pub use categories::{Codes, ElementSource, Kind, Kinds, TextColumn};
 pub use cell::Cell;
 pub use element::Element;
 pub use error::{FileError, Place};

@@ -44,6 +44,12 @@ impl<'l> Line<'l> {
         Self { path, number, bytes }
     }
 
+    /// Returns the line up to a comment, which begins with any of these marks.
+    pub(crate) fn without_comment(self, marks: &[u8]) -> Self {
+        let end = self.bytes.iter().position(|byte| marks.contains(byte));
+        Self { bytes: &self.bytes[..end.unwrap_or(self.bytes.len())], ..self }
+    }
+
     pub(crate) fn path(&self) -> &'l Arc<Path> {
         self.path
     }

@@ -1,7 +1,9 @@
 //! Derives elements from type names.
 
 use crate::element::{is_virtual_site, of_atom_name, of_group};
-use crate::{Element, Kind, Kinds, ParticleFrame, error::listed, number, schema::Naming};
+use crate::{
+    Element, ElementSource, Kind, Kinds, ParticleFrame, error::listed, number, schema::Naming,
+};
 use std::collections::HashMap;
 
 /// Fraction of particles without an element above which names are not read as elements.
@@ -12,11 +14,19 @@ const NO_NAMES: f64 = 0.1;
 pub(crate) fn kind(name: &str, naming: Naming) -> Kind {
     let virtual_site = is_virtual_site(name, "");
     let is_number = number::whole(name.as_bytes()).is_some();
-    let is_type = is_number && naming == Naming::Types;
+    // Types of GAFF and other force fields for molecules are in small letters: `ca` is an aromatic carbon.
+    let is_small = name.len() == 2 && name.bytes().all(|letter| letter.is_ascii_lowercase());
+    let is_type = (is_number || is_small) && naming == Naming::Types;
     let group = || if naming == Naming::Groups { of_group(name) } else { None };
     let found = || Element::from_label(name).or_else(group);
     let element = if virtual_site || is_type { None } else { found() };
-    Kind { name: name.to_owned(), element, virtual_site }
+    let source = match naming {
+        Naming::Types => ElementSource::Type,
+        Naming::Names => ElementSource::Name,
+        Naming::Symbols | Naming::Groups if is_number => ElementSource::Number,
+        Naming::Symbols | Naming::Groups => ElementSource::Symbol,
+    };
+    Kind { name: name.to_owned(), element, source, virtual_site }
 }
 
 /// Types of SYBYL that stand for no element: dummies, lone pairs, and sets of elements.
@@ -30,16 +40,19 @@ pub(crate) fn of_sybyl(kind: &str, name: &str, residue: &str) -> Kind {
     let symbol = own.name.trim_end_matches(|letter: char| !letter.is_ascii_alphabetic());
     let is_sybyl = own.element.is_some_and(|element| element.symbol() == symbol);
     if own.virtual_site || is_sybyl || NO_ELEMENT.contains(&symbol) {
-        return own;
+        return Kind { source: ElementSource::Type, ..own };
     }
-    Kind { element: of_atom_name(name, residue).or(own.element), ..own }
+    match of_atom_name(name, residue) {
+        Some(element) => Kind { element: Some(element), source: ElementSource::Name, ..own },
+        None => Kind { source: ElementSource::Type, ..own },
+    }
 }
 
 /// Returns the type of an atom of a molecule, by its name and that of its residue.
 pub(crate) fn of_atom(name: &str, residue: &str) -> Kind {
     let virtual_site = is_virtual_site(name, residue);
     let element = if virtual_site { None } else { of_atom_name(name, residue) };
-    Kind { name: name.to_owned(), element, virtual_site }
+    Kind { name: name.to_owned(), element, source: ElementSource::Name, virtual_site }
 }
 
 /// Elements by names and by masses.
@@ -64,7 +77,10 @@ impl Weighing {
                 }
                 kind
             }
-            own => Kind { element: by_mass.or(own), ..kind },
+            _ if by_mass.is_some() => {
+                Kind { element: by_mass, source: ElementSource::Mass, ..kind }
+            }
+            _ => kind,
         }
     }
 
@@ -86,9 +102,19 @@ impl Weighing {
     }
 }
 
+/// Returns whether symbols are names of atoms of proteins: those of the backbone, and one that is no symbol.
+fn are_of_proteins(table: &[Kind]) -> bool {
+    let has = |name: &str| table.iter().any(|kind| kind.name == name);
+    ["N", "CA", "C", "O"].into_iter().all(has)
+        && ["CB", "HA", "HA1", "HA2", "OXT"].into_iter().any(has)
+}
+
 /// Removes all elements if too many particles have none: then names that look like symbols are
 /// something else, such as beads of a coarse-grained model.
 pub(crate) fn drop_uncertain_elements(kinds: &mut Kinds, naming: Naming) {
+    if naming == Naming::Symbols && are_of_proteins(&kinds.table) {
+        kinds.table.iter_mut().for_each(|kind| *kind = of_atom(&kind.name, ""));
+    }
     let limit = match naming {
         Naming::Symbols | Naming::Groups => NO_SYMBOLS,
         Naming::Types => 0.0,

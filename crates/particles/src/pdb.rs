@@ -12,8 +12,9 @@ use crate::lines::{Line, Lines};
 use crate::schema::{Naming, Schema, Slot};
 use crate::source::{Source, is_standard_input};
 use crate::{
-    Bonds, Cell, Element, FileError, Format, Kind, LengthUnit, ParticleFrame, ReadOptions,
-    ReadProgress, Role, builder::Builder, fields::fixed, frame_reader::FrameReader, number,
+    Bonds, Cell, Element, ElementSource, FileError, Format, Kind, LengthUnit, ParticleFrame,
+    ReadOptions, ReadProgress, Role, builder::Builder, fields::fixed, frame_reader::FrameReader,
+    number,
 };
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -372,11 +373,17 @@ fn kind(key: &str) -> Kind {
     let part = |start: usize, end: usize| key.get(start..end).unwrap_or_default();
     let (name, residue, symbol) = (part(0, 4), part(4, 8).trim(), part(8, 10).trim());
     let virtual_site = is_virtual_site(name.trim(), residue);
-    let by_symbol =
-        if key.ends_with('Q') { of_autodock_type(symbol) } else { Element::from_symbol(symbol) };
-    let element = by_symbol.or_else(|| of_aligned_name(name, residue));
+    let by_symbol = if key.ends_with('Q') {
+        (of_autodock_type(symbol), ElementSource::Type)
+    } else {
+        (Element::from_symbol(symbol), ElementSource::Symbol)
+    };
+    let (element, source) = match by_symbol {
+        (None, _) => (of_aligned_name(name, residue), ElementSource::Name),
+        found => found,
+    };
     let element = element.filter(|_| !virtual_site);
-    Kind { name: name.trim().to_owned(), element, virtual_site }
+    Kind { name: name.trim().to_owned(), element, source, virtual_site }
 }
 
 /// Parses the cell of `CRYST1`; a unit cell with edges of 1 means none, and so does a line that ends before its numbers.

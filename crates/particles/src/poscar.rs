@@ -16,6 +16,9 @@ const CONFIGURATION: &[u8] = b"Direct configuration";
 /// Maximum number of species.
 const SPECIES: usize = 10_000;
 
+/// Marks of comments at the ends of lines.
+const COMMENT: &[u8] = b"!#";
+
 /// Reader of the frames of a file.
 pub(crate) struct Poscar {
     lines: Lines,
@@ -47,7 +50,7 @@ impl Poscar {
 
     fn header(&mut self) -> Result<Header, FileError> {
         let title = self.lines.require("its title")?.text().trim().to_owned();
-        let line = self.lines.require("its scale")?;
+        let line = self.lines.require("its scale")?.without_comment(COMMENT);
         let scales = numbers(&line)?;
         let wrong_scale = line.whole("the scale is not one or three numbers");
         let mut vectors = [DVec3::ZERO; 3];
@@ -69,7 +72,7 @@ impl Poscar {
             vectors: vectors.map(|vector| vector * scale),
             periodic: [true; 3],
         };
-        let line = self.lines.require("its numbers of atoms")?;
+        let line = self.lines.require("its numbers of atoms")?.without_comment(COMMENT);
         let no_cell = line.whole("the lattice vectors before have no volume");
         let cell = cell.with_volume().ok_or(no_cell)?;
         let mut symbols = None;
@@ -78,6 +81,7 @@ impl Poscar {
         }
         let line =
             if symbols.is_some() { self.lines.require("its numbers of atoms")? } else { line };
+        let line = line.without_comment(COMMENT);
         let counts = line.fields().take(SPECIES).map(|field| line.whole_number(field));
         let counts = counts.collect::<Result<Vec<u64>, FileError>>()?;
         // Before version 5, symbols stood in the title, if anywhere.
@@ -202,7 +206,11 @@ impl FrameReader for Poscar {
 /// and numbers of atoms or only these, and the kind of coordinates.
 pub(crate) fn is_poscar(head: &[u8]) -> bool {
     let lines: Vec<&[u8]> = head.split(|&byte| byte == b'\n').take(9).collect();
-    let line = |line: usize| lines.get(line).copied().unwrap_or_default();
+    let line = |line: usize| {
+        let content =
+            lines.get(line).and_then(|line| line.split(|byte| COMMENT.contains(byte)).next());
+        content.unwrap_or_default()
+    };
     let has = |row: usize, count: usize| {
         let numbers: Option<Vec<f64>> = Fields::blanks(line(row)).map(number::parse).collect();
         numbers.is_some_and(|numbers| numbers.len() == count)

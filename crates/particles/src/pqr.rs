@@ -2,7 +2,7 @@
 //! where they touch, with a charge and a radius in angstrom (apbs.readthedocs.io/en/latest/formats/pqr.html).
 
 use crate::lines::{Line, Lines};
-use crate::schema::{Naming, Schema, Slot};
+use crate::schema::{Schema, Slot};
 use crate::{
     FileError, Format, LengthUnit, ParticleFrame, ReadOptions,
     builder::Builder,
@@ -30,7 +30,7 @@ const NUMBERS: usize = 5;
 /// Number of rows from which the format is detected.
 const ROWS: usize = 64;
 
-/// Reader of a PQR file, which is one frame.
+/// Reader of the models of a PQR file, one frame each.
 pub(crate) struct Pqr {
     lines: Lines,
     schema: Result<Arc<Schema>, String>,
@@ -38,9 +38,7 @@ pub(crate) struct Pqr {
 
 impl Pqr {
     pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
-        let schema = Schema::new(NAMES.map(str::to_owned).into(), options);
-        let named = |schema| Arc::new(Schema { naming: Naming::Names, ..schema });
-        Self { lines: Lines::new(source), schema: schema.map(named) }
+        Self { lines: Lines::new(source), schema: Schema::of_atoms(NAMES, options) }
     }
 }
 
@@ -90,6 +88,14 @@ impl FrameReader for Pqr {
         builder.declare(&TEXTS, &["charge"]);
         let has_kind = schema.slots.contains(&Slot::Kind);
         while let Some(line) = self.lines.next()? {
+            let has_atoms = !builder.frame.is_empty();
+            if line.bytes.starts_with(b"ENDMDL") && has_atoms {
+                break;
+            }
+            if line.bytes.starts_with(b"MODEL") && has_atoms {
+                self.lines.back();
+                break;
+            }
             if is_atom(line.bytes) {
                 let fields = fields(&line)?;
                 builder.row(&line, fields.into_iter())?;
@@ -100,6 +106,25 @@ impl FrameReader for Pqr {
         }
         let frame = builder.finish();
         Ok((!frame.is_empty()).then_some(ParticleFrame { unit: LengthUnit::Angstrom, ..frame }))
+    }
+
+    fn skip(&mut self) -> Result<bool, FileError> {
+        let mut has_atoms = false;
+        while let Some(line) = self.lines.next()? {
+            if line.bytes.starts_with(b"ENDMDL") && has_atoms {
+                break;
+            }
+            if line.bytes.starts_with(b"MODEL") && has_atoms {
+                self.lines.back();
+                break;
+            }
+            has_atoms |= is_atom(line.bytes);
+        }
+        Ok(has_atoms)
+    }
+
+    fn more(&mut self) -> Result<bool, FileError> {
+        self.skip()
     }
 }
 

@@ -3,32 +3,18 @@
 
 use crate::bonds::{Listed, row_from_one};
 use crate::lines::{Line, Lines};
-use crate::schema::{Naming, Schema, Slot};
+use crate::unplaced::{self, UnplacedAtoms};
 use crate::{
-    Bonds, FileError, Format, Kind, ParticleFrame, ReadOptions, builder::Builder, fields::Fields,
-    frame_reader::FrameReader, naming, naming::Weighing, number, source::Source,
+    Bonds, FileError, Format, ParticleFrame, ReadOptions, fields::Fields,
+    frame_reader::FrameReader, number, schema::Schema, source::Source,
 };
 use std::sync::Arc;
 
-/// Names of the columns, of which the last three are not in the file.
-const NAMES: [&str; 11] = [
-    "number",
-    "segment",
-    "residue_number",
-    "residue",
-    "name",
-    "atom_type",
-    "charge",
-    "mass",
-    "x",
-    "y",
-    "z",
-];
+/// Names of the columns.
+const NAMES: [&str; COLUMNS] =
+    ["number", "segment", "residue_number", "residue", "name", "atom_type", "charge", "mass"];
 
-/// Columns of texts, even if the texts look like numbers.
-const TEXTS: [&str; 6] = ["number", "segment", "residue_number", "residue", "name", "atom_type"];
-
-/// Number of columns in the file.
+/// Number of columns.
 const COLUMNS: usize = 8;
 
 /// Reader of a PSF file, which is one frame.
@@ -41,10 +27,9 @@ pub(crate) struct Psf {
 
 impl Psf {
     pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
-        let schema = Schema::new(NAMES.map(str::to_owned).into(), options);
-        let named = |schema| Arc::new(Schema { naming: Naming::Names, ..schema });
+        let schema = unplaced::schema(NAMES, options);
         let reads_bonds = options.reads_bonds();
-        Self { lines: Lines::new(source), schema: schema.map(named), done: false, reads_bonds }
+        Self { lines: Lines::new(source), schema, done: false, reads_bonds }
     }
 
     /// Reads the section of bonds: pairs of numbers of atoms, four in a line; `None` without the section.
@@ -117,18 +102,6 @@ fn fields<'l>(line: &Line<'l>) -> Result<[&'l [u8]; COLUMNS], FileError> {
     })
 }
 
-/// Returns the type for the mass, name and residue of an atom, separated by blanks.
-fn kind(key: &str, weighing: &mut Weighing) -> Kind {
-    let mut parts = key.split(' ');
-    let mut part = || parts.next().unwrap_or_default();
-    let (mass, name, residue) = (part(), part(), part());
-    let named = naming::of_atom(name, residue);
-    match number::parse(mass.as_bytes()) {
-        Some(mass) => weighing.weigh(named, name, mass),
-        None => named,
-    }
-}
-
 impl FrameReader for Psf {
     fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
         if std::mem::replace(&mut self.done, true) {
@@ -136,26 +109,20 @@ impl FrameReader for Psf {
         }
         let schema = self.schema.clone().map_err(|message| self.lines.ended(message))?;
         let count = self.count()?;
-        let mut builder = Builder::new(self.lines.path(), Format::Psf, &schema);
-        builder.declare(&TEXTS, &["charge", "mass"]);
-        let has_kind = schema.slots.contains(&Slot::Kind);
-        let mut weighing = Weighing::default();
+        let mut atoms = UnplacedAtoms::new(self.lines.path(), Format::Psf, &schema);
         for atom in 0..count {
             let line = self.lines.row(atom, count, "atoms", "the file is cut off")?;
             let fields = fields(&line)?;
             let positions: [&[u8]; 3] = [b"nan"; 3];
-            builder.row(&line, fields.into_iter().chain(positions))?;
-            if !has_kind {
-                let key = [fields[7], fields[4], fields[3]].join(&b' ');
-                builder.kind_of(&key, |key| kind(key, &mut weighing));
-            }
+            atoms.builder.row(&line, fields.into_iter().chain(positions))?;
+            let [.., residue, name, _, _, mass] = fields;
+            atoms.kind(b"", mass, name, residue);
         }
         if self.lines.next()?.is_some_and(|line| fields(&line).is_ok()) {
-            builder.warn_of_more_rows();
+            atoms.builder.warn_of_more_rows();
         }
         self.lines.back();
-        let mut frame = builder.finish();
-        weighing.warn(&mut frame);
+        let mut frame = atoms.finish();
         if self.reads_bonds {
             frame.bonds = self.bonds(frame.len())?;
         }

@@ -2,9 +2,10 @@
 
 use crate::source::{Source, is_standard_input};
 use crate::{
-    AlignBy, BondSource, Element, FileError, Format, FrameChoice, ParticleFrame, ReadOptions, Role,
-    derived::Derived, formats, frame_reader::FrameReader, ids, shapes::ShapeColumns,
-    smoothing::Window, sniff, superposition::Reference, topology::Joined, trails::History,
+    AlignBy, BondSource, Element, ElementSource, FileError, Format, FrameChoice, ParticleFrame,
+    ReadOptions, Role, derived::Derived, formats, frame_reader::FrameReader, ids,
+    shapes::ShapeColumns, smoothing::Window, sniff, superposition::Reference, topology::Joined,
+    trails::History,
 };
 use std::path::{Path, PathBuf};
 
@@ -98,7 +99,9 @@ impl Frames {
         }
         for kind in &mut frame.kinds.table {
             let given = self.elements.iter().rev().find(|(name, _)| *name == kind.name);
-            kind.element = given.map(|(_, element)| *element).or(kind.element);
+            if let Some((_, element)) = given {
+                (kind.element, kind.source) = (Some(*element), ElementSource::Given);
+            }
         }
         let fault = |message: String| FileError::whole_file(&self.path, message);
         self.shapes.apply(&mut frame).map_err(fault)?;
@@ -255,7 +258,33 @@ pub(crate) fn open(
     }
     let bonds = options.bonds.for_format(format);
     let reader = (formats::row(format).open)(source, &ReadOptions { bonds, ..options.clone() })?;
-    Ok((format, reader))
+    Ok((format, Box::new(WithVolume(reader))))
+}
+
+/// Reader whose frames have no cell without a volume: such a cell is left out with a warning.
+struct WithVolume(Box<dyn FrameReader>);
+
+impl FrameReader for WithVolume {
+    fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
+        let Some(mut frame) = self.0.next()? else { return Ok(None) };
+        if let Some(cell) = frame.cell.take_if(|cell| cell.with_volume().is_none()) {
+            let [a, b, c] = cell.vectors.map(|edge| edge.to_array());
+            frame.warnings.push(if cell.vectors.iter().any(|edge| edge.is_nan()) {
+                "its cell is left out: no cell has such angles".to_owned()
+            } else {
+                format!("its cell is left out: edges {a:?}, {b:?} and {c:?} have no volume")
+            });
+        }
+        Ok(Some(frame))
+    }
+
+    fn skip(&mut self) -> Result<bool, FileError> {
+        self.0.skip()
+    }
+
+    fn more(&mut self) -> Result<bool, FileError> {
+        self.0.more()
+    }
 }
 
 impl Iterator for Frames {

@@ -2,6 +2,7 @@
 
 use crate::{LengthUnit, Radii, ReadOptions, Role, aliases, suggest, units};
 use std::collections::HashSet;
+use std::sync::Arc;
 
 /// The use of a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +57,15 @@ pub(crate) struct Schema {
 }
 
 impl Schema {
+    /// Returns the [schema](Self::new) of a file whose types are names of atoms in molecules.
+    pub(crate) fn of_atoms(
+        names: impl IntoIterator<Item = &'static str>,
+        options: &ReadOptions,
+    ) -> Result<Arc<Self>, String> {
+        let schema = Self::new(names.into_iter().map(str::to_owned).collect(), options)?;
+        Ok(Arc::new(Self { naming: Naming::Names, ..schema }))
+    }
+
     /// Assigns roles to columns by their names, ignoring case; the options take precedence.
     ///
     /// # Errors

@@ -96,7 +96,7 @@ mod tests {
         for (row, (name, element)) in kinds.iter().enumerate() {
             let element = element.and_then(Element::from_label);
             let name = (*name).to_owned();
-            frame.kinds.table.push(Kind { name, element, virtual_site: false });
+            frame.kinds.table.push(Kind { name, element, ..Kind::default() });
             frame.kinds.codes.push(row as u32);
         }
         let mut column = TextColumn { name: "chain".to_owned(), ..TextColumn::default() };

@@ -12,7 +12,7 @@ use std::path::Path;
 const KNOWN: &str = "files of particles are rows of `x y z [radius]`, tables with a header that \
                      names x, y and z, XYZ, dumps and data files of LAMMPS, GRO, PDB, mmCIF, CIF \
                      of crystals, BinaryCIF, GSD, PLY, arrays of NumPy, DCD, XTC, TRR, NetCDF, restart files \
-                     and topologies of Amber, trajectories of ASE, PQR, POSCAR, SDF, MOL2, XSF, CFG, PSF and H5MD; of others, name the format, as in --format xyz, \
+                     and topologies of Amber, trajectories of ASE, PQR, POSCAR, SDF, MOL2, XSF, CFG, PSF, coordinates of NAMD and H5MD; of others, name the format, as in --format xyz, \
                      or the columns, as in --format csv --columns x=NAME,y=NAME,z=NAME";
 
 /// Maximum number of lines before the number of atoms in a LAMMPS data file.

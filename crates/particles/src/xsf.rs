@@ -81,7 +81,7 @@ impl Xsf {
             };
             *vector = DVec3::new(x, y, z);
         }
-        Ok(Cell { origin: DVec3::ZERO, vectors, periodic: self.periodic }.checked())
+        Ok(Cell { origin: DVec3::ZERO, vectors, periodic: self.periodic }.declared())
     }
 }
 

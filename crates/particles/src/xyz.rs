@@ -156,7 +156,7 @@ impl Comment {
         });
         let periodic = value("pbc").map_or(Ok([true; 3]), |value| periodic(line, value))?;
         let origin = origin.transpose()?.map_or(DVec3::ZERO, DVec3::from_array);
-        let cell = cell.and_then(|cell| Cell { origin, periodic, ..cell }.checked());
+        let cell = cell.and_then(|cell| Cell { origin, periodic, ..cell }.declared());
         let lammps = text.strip_prefix("Atoms. Timestep:").map(str::trim);
         let step = lammps.or_else(|| value("Step")).or_else(|| value("Timestep"));
         Ok(Self {

@@ -159,3 +159,63 @@ fn dummies_and_vacant_sites_are_no_atoms() {
     // An unknown column of occupancies, perhaps.
     assert_eq!(symbols(&frame(&format!("{CRYSTAL}C1 C 0.5 0.5 0.5 0 d\n"))), "C");
 }
+
+#[test]
+fn small_letters_of_type_labels_are_no_symbols() {
+    let dump = |labels: [&str; 3]| {
+        let rows = [1, 2, 3].map(|row| format!("{row} {} {row} 1 1\n", labels[row - 1])).concat();
+        symbols(&frame(&format!(
+            "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n0 9\n\
+             ITEM: ATOMS id typelabel x y z\n{rows}"
+        )))
+    };
+    assert_eq!(dump(["ca", "os", "ho"]), "- - -");
+    assert_eq!(dump(["Ca", "O", "H"]), "Ca O H");
+}
+
+#[test]
+fn names_of_atoms_of_proteins_in_xyz_are_no_symbols() {
+    let xyz = |names: &str| {
+        let names: Vec<&str> = names.split(' ').collect();
+        let atom = |(row, name)| format!("{name} {row} 0 0\n");
+        let rows: String = names.iter().enumerate().map(atom).collect();
+        symbols(&frame(&format!("{}\n\n{rows}", names.len())))
+    };
+    assert_eq!(xyz("N CA C O CB HA CD NE"), "N C C O C H C N");
+    assert_eq!(xyz("CA O C"), "Ca O C");
+    // Labels with notes, and ghosts without a nucleus.
+    assert_eq!(xyz("Fe_1 H(Iso=2) O Bq"), "Fe H O -");
+}
+
+/// Names of what the elements of all types are known from.
+fn sources(frame: &ParticleFrame) -> String {
+    let names = frame.kinds.table.iter().map(|kind| match kind.element {
+        Some(_) => kind.source.name(),
+        None => "-",
+    });
+    names.collect::<Vec<_>>().join(", ")
+}
+
+#[test]
+fn elements_tell_what_they_are_known_from() {
+    let atom = |name: &str, symbol: &str| {
+        format!(
+            "ATOM      1 {name} ALA A   1       0.000   0.000   0.000  1.00  0.00          {symbol}\n"
+        )
+    };
+    let pdb = frame(&[atom(" N  ", " N"), atom(" CB ", "")].concat());
+    assert_eq!(sources(&pdb), "symbol, name");
+    assert_eq!(sources(&frame("2\n\n8 0 0 0\nH 1 0 0\n")), "atomic number, symbol");
+    let masses = "1 9.995 # C\n2 3.024 # HA atoms\n3 15.999\n";
+    assert_eq!(sources(&data(masses, "atomic", &[1, 2, 3])), "name, name, mass");
+    let mol2 = "@<TRIPOS>MOLECULE\nM\n2\n@<TRIPOS>ATOM\n1 C1 0 0 0 C.3\n2 N1 1 0 0 no\n";
+    assert_eq!(sources(&frame(mol2)), "type, name");
+    let given = ReadOptions {
+        elements: vec![("1".to_owned(), Element::from_symbol("Si").expect("silicon"))],
+        ..ReadOptions::default()
+    };
+    let text = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n0 9\n\
+        ITEM: ATOMS id type x y z\n1 1 0.5 1 0\n";
+    let frame = read_frame(&file(text).path, &given).expect("a frame");
+    assert_eq!((sources(&frame), symbols(&frame)), ("given".to_owned(), "Si".to_owned()));
+}

@@ -1,6 +1,6 @@
 //! Tests that readers say what they leave out, and refuse options that have no effect.
 
-use spherule_particles::{Radii, ReadOptions, read_frame};
+use spherule_particles::{BondSource, FrameChoice, Radii, ReadOptions, count_frames, read_frame};
 use std::path::PathBuf;
 
 struct File {
@@ -126,4 +126,97 @@ fn roles_without_effect_are_refused() {
         let error = read_frame(&file(content).path, &options).expect_err("fixed");
         assert!(error.to_string().contains("`x=q` has no effect"), "{error}");
     }
+}
+
+#[test]
+fn cells_without_a_volume_are_left_out_with_a_warning() {
+    let flat = |lattice: &str| {
+        format!("1\nLattice=\"{lattice}\" Properties=species:S:1:pos:R:3\nNa 0 0 0\n")
+    };
+    let cryst = |angles: &str| {
+        format!(
+            "CRYST1   10.000   10.000   10.000{angles} P 1           1\n\
+             HETATM    1  C   GRA A   1       0.500   1.000   0.000  1.00  0.00           C\n"
+        )
+    };
+    for (content, expected) in [
+        (flat("1 0 0 2 0 0 0 0 3"), "no volume"),
+        (flat("1 0 0 2 0 0 0 0 0"), "no volume"),
+        (cryst(" 150.00 150.00 150.00"), "such angles"),
+        (
+            DUMP.replace("ITEM: BOX BOUNDS pp pp pp", "ITEM: BOX BOUNDS xy xz yz pp pp pp")
+                .replace("0 9\n0 9\n0 9", "0 9 9\n0 9 0\n0 0 0"),
+            "",
+        ),
+        (flat("0 0 0 0 0 0 0 0 0"), ""),
+        (cryst("  90.00  90.00  90.00"), ""),
+    ] {
+        let found = warnings(&content).1;
+        let has = found.contains("its cell is left out") && found.contains(expected);
+        assert_eq!(has, !expected.is_empty(), "{content}{found}");
+    }
+}
+
+#[test]
+fn models_of_pqr_and_blocks_of_mmcif_are_frames() {
+    let atom = "ATOM 1 N NTR 0 63.889 69.990 133.214 0.1414 1.8240\n";
+    let block = |name: &str, cell: &str| {
+        format!(
+            "data_{name}\n{cell}loop_\n_atom_site.type_symbol\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n\
+             _atom_site.Cartn_z\nC 0.5 1 0\n"
+        )
+    };
+    let cell = "_struct.title first\n_cell.length_a 6\n_cell.length_b 5\n_cell.length_c 4\n_cell.angle_alpha 90\n\
+        _cell.angle_beta 90\n_cell.angle_gamma 90\n";
+    for content in [
+        format!("MODEL 1\n{atom}ENDMDL\nMODEL 2\n{atom}{atom}ENDMDL\n"),
+        format!("MODEL 1\n{atom}MODEL 2\n{atom}{atom}"),
+        block("a", cell) + &block("b", "") + "C 0.5 2 0\n",
+    ] {
+        let file = file(&content);
+        let count = count_frames(&file.path, &ReadOptions::default()).expect("frames");
+        assert_eq!(count, 2, "{content}");
+        let (first, found) = warnings(&content);
+        assert!(first == 1 && found.contains("only the first of several frames"), "{found}");
+        let options = ReadOptions { frame: FrameChoice::Index(1), ..ReadOptions::default() };
+        let second = read_frame(&file.path, &options).expect("the second frame");
+        assert_eq!((second.len(), second.cell, second.title.as_str()), (2, None, ""), "{content}");
+    }
+    assert_eq!(warnings(&atom.repeat(2)), (2, String::new()));
+}
+
+#[test]
+fn bonds_of_labels_that_repeat_are_left_out() {
+    let bonds =
+        "loop_\n_geom_bond_atom_site_label_1\n_geom_bond_atom_site_label_2\nNa1 Cl1\nCl1 K1\n";
+    let content = format!("{CIF}Na1 0.1 0.5 0.5\nK1 0.9 0.5 0.5\n{bonds}");
+    let options = ReadOptions { bonds: BondSource::File, ..ReadOptions::default() };
+    let frame = read_frame(&file(&content).path, &options).expect("a frame");
+    assert_eq!(frame.bonds.map(|bonds| (bonds.first, bonds.second)), Some((vec![1], vec![3])));
+    let told = frame.warnings.iter().any(|warning| warning.contains("1 bond"));
+    assert!(told, "{:?}", frame.warnings);
+}
+
+#[test]
+fn ellipsoids_of_no_atom_are_left_out() {
+    let data = DATA.replace("1 atom types", "1 atom types\n1 ellipsoids");
+    let atoms = data.replace("Atoms # atomic", "Atoms # ellipsoid");
+    let atoms =
+        atoms.replace("1 1 0.5 1 1", "1 1 1 1.0 0.5 1 1").replace("2 1 3 1 1", "2 1 0 1.0 3 1 1");
+    let (count, found) =
+        warnings(&format!("{atoms}\nEllipsoids\n\n1 1 2 3 1 0 0 0\n7 1 2 3 1 0 0 0\n"));
+    assert_eq!(count, 2);
+    assert!(found.contains("1 ellipsoid is left out"), "{found}");
+}
+
+#[test]
+fn comments_may_follow_numbers() {
+    let poscar = POSCAR
+        .replace("\n1\n", "\n1 ! scale\n")
+        .replace("Na Cl\n1 1\n", "Na Cl ! species\n1 1 # counts\n")
+        .replace("\n\n0 0 0\n0 0 0\n", "\n");
+    assert_eq!(warnings(&poscar), (2, String::new()));
+    let cfg =
+        CFG.replace("35.45\n", "# the other\n35.45 # mass\n").replace("Cl\n", "Cl # symbol\n");
+    assert_eq!(warnings(&cfg), (2, String::new()));
 }

@@ -31,8 +31,9 @@ const SAME: [&str; 15] = [
 /// Trajectories with other frames.
 const OTHERS: [&str; 4] = ["fixed_atoms.dcd", "no_cell.dcd", "no_cell.ncdf", "six.xtc"];
 
-/// Structures in text.
-const STRUCTURES: [&str; 7] = [
+/// Structures.
+const STRUCTURES: [&str; 8] = [
+    "water.coor",
     "water.pqr",
     "zns.poscar",
     "zns.xdatcar",
@@ -311,6 +312,41 @@ fn restart_files_and_trajectories_of_ase_have_velocities() {
     let values: Vec<f64> = frame.numbers.iter().map(|column| column.values[0]).collect();
     assert!((values[0] - 0.02 * 15.999).abs() < 1e-9 && values[1] == -1.6, "{values:?}");
     assert_eq!(frame.cell.map(|cell| cell.periodic), Some([true, true, false]));
+}
+
+#[test]
+fn coordinates_of_namd_need_a_topology_and_are_no_velocities() {
+    let frame = read("water.coor", &at(0));
+    assert_eq!((frame.len(), frame.unit), (12, LengthUnit::Angstrom));
+    assert!((frame.position(11).z - 6.19513).abs() < 1e-4 && frame.cell.is_none());
+    assert!(frame.warnings.iter().any(|warning| warning.contains("--topology")));
+    let content = std::fs::read(trajectory("water.coor")).expect("a file");
+    let folder = tempfile::tempdir().expect("a folder");
+    let error = |name: &str, content: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, content).expect("a file");
+        read_frame(&path, &ReadOptions::default()).expect_err("a fault").message
+    };
+    assert!(error("run.restart.vel", &content).contains("velocities"));
+    assert!(error("run.coor", &content[..200]).contains("cut off"));
+    let longer = [&content[..], &[0; 8]].concat();
+    assert!(error("run.coor", &longer).contains("300 bytes"));
+}
+
+#[test]
+fn titles_of_dcd_may_be_longer_than_their_record_says() {
+    let content = std::fs::read(trajectory("water.dcd")).expect("a file");
+    // The record follows the header: its length, its number of lines, these, and its length.
+    let (header, rest) = content.split_at(92);
+    let length = u32::from_le_bytes(rest[..4].try_into().expect("a length"));
+    let after = &rest[8 + length as usize..];
+    let claimed = 164_u32.to_le_bytes();
+    let title = [&claimed[..], &3_u32.to_le_bytes(), &[0; 240], &claimed].concat();
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("title.dcd");
+    std::fs::write(&path, [header, &title, after].concat()).expect("a file");
+    let frame = read_frame(&path, &ReadOptions::default()).expect("a frame");
+    assert_eq!(difference(&frame, &read("water.dcd", &at(0))), 0.0);
 }
 
 /// Names of types and symbols of elements of the first rows.

@@ -42,6 +42,8 @@ pub(super) struct ParticleInfo {
 struct TypeInfo {
     name: String,
     element: Option<&'static str>,
+    /// The fact of the file from which the element is known; null without one.
+    element_from: Option<&'static str>,
     spheres: u64,
 }
 
@@ -103,6 +105,7 @@ impl ParticleInfo {
                 .map(|(kind, spheres)| TypeInfo {
                     name: kind.name.clone(),
                     element: kind.element.map(Element::symbol),
+                    element_from: kind.element.map(|_| kind.source.name()),
                     spheres,
                 })
                 .collect(),
@@ -136,7 +139,11 @@ impl ParticleInfo {
         output::print(format_args!("columns      {}", self.columns.join(", ")));
         columns::print(&self.column_values);
         for kind in self.types.iter().take(SHOWN) {
-            let element = kind.element.map_or(String::new(), |element| format!(" ({element})"));
+            let element = kind.element.zip(kind.element_from);
+            let element = element.map_or(String::new(), |(element, from)| match from {
+                "given" => format!(" ({element} as given)"),
+                _ => format!(" ({element} by {from})"),
+            });
             let count = HumanCount(kind.spheres);
             output::print(format_args!("type         {}{element}: {count}", kind.name));
         }

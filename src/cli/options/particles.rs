@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 pub(in crate::cli) struct ParticleArgs {
     /// File format [default: detected]: xyzr, csv, xyz, lammps-dump, lammps-data, gro, pdb, mmcif, cif, gsd,
     /// ply, npy, npz, dcd, xtc, trr, netcdf, hdf5, pqr, poscar, sdf, mol2, xsf, cfg,
-    /// psf, prmtop, rst7, ase or bcif
+    /// psf, prmtop, rst7, ase, bcif or namd
     #[arg(long, value_parser = |name: &str| values::named(&Format::ALL, name, "formats are"))]
     format: Option<Format>,
     /// Meaning of columns, as in x=px,radius=size,type=species

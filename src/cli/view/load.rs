@@ -131,7 +131,7 @@ impl Base {
     /// Converts a scene's spheres to particles whose types are materials.
     fn of_scene(mut scene: Scene) -> Self {
         let spheres = std::mem::take(&mut scene.spheres);
-        let kind = |name: &String| Kind { name: name.clone(), element: None, virtual_site: false };
+        let kind = |name: &String| Kind { name: name.clone(), ..Kind::default() };
         let table = scene.materials.iter().map(|material| kind(&material.name)).collect();
         let codes = if spheres.material.is_empty() {
             Codes::Bytes(vec![0; spheres.len()])

@@ -3,13 +3,13 @@
 
 use crate::bonds::{End, Listed};
 use crate::lines::{Line, Lines};
-use crate::schema::{Naming, Schema, Slot};
+use crate::schema::Slot;
+use crate::unplaced::{self, UnplacedAtoms};
 use crate::{
-    Bonds, Element, FileError, Format, Kind, ParticleFrame, ReadOptions, builder::Builder,
-    fields::fixed, frame_reader::FrameReader, naming, naming::Weighing, source::Source,
+    Bonds, FileError, Format, ParticleFrame, ReadOptions, fields::fixed, frame_reader::FrameReader,
+    source::Source,
 };
 use std::collections::HashMap;
-use std::sync::Arc;
 
 /// Names of the columns of numbers and texts of atoms, with their sections.
 const SECTIONS: [(&str, &str); 4] = [
@@ -22,11 +22,8 @@ const SECTIONS: [(&str, &str); 4] = [
 /// Section of the atomic numbers, from which elements follow.
 const ELEMENTS: &str = "ATOMIC_NUMBER";
 
-/// Names of the other columns, of which the last three are not in the file.
-const NUMBERED: [&str; 6] = ["number", "residue_number", "residue", "x", "y", "z"];
-
-/// Columns of texts, even if the texts look like numbers.
-const TEXTS: [&str; 5] = ["number", "residue_number", "residue", "name", "atom_type"];
+/// Names of the other columns.
+const NUMBERED: [&str; 3] = ["number", "residue_number", "residue"];
 
 /// Sections of the residues, and of the bonds: with hydrogen and without.
 const RESIDUES: [&str; 2] = ["RESIDUE_LABEL", "RESIDUE_POINTER"];
@@ -191,22 +188,6 @@ fn add(values: &mut Values, line: &Line, width: usize) -> Result<(), FileError> 
     Ok(())
 }
 
-/// Returns the type for the atomic number, mass, name and residue of an atom, separated by blanks; the first two may be
-/// blank.
-fn kind(key: &str, weighing: &mut Weighing) -> Kind {
-    let mut parts = key.split(' ');
-    let mut part = || parts.next().unwrap_or_default();
-    let (number, mass, name, residue) = (part(), part(), part(), part());
-    let named = naming::of_atom(name, residue);
-    match (number.parse(), mass.parse()) {
-        // Extra points; what AMBER does not know has -1.
-        (Ok(0), _) => Kind { element: None, virtual_site: true, ..named },
-        (Ok(number), _) => Kind { element: Element::from_number(number), ..named },
-        (_, Ok(mass)) => weighing.weigh(named, name, mass),
-        _ => named,
-    }
-}
-
 impl FrameReader for Prmtop {
     fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
         if std::mem::replace(&mut self.done, true) {
@@ -225,19 +206,15 @@ impl FrameReader for Prmtop {
         if columns.is_empty() {
             return Err(self.lines.ended("the file has no section ATOM_NAME"));
         }
-        let names = columns.iter().map(|(name, _)| *name).chain(NUMBERED).map(str::to_owned);
-        let schema = Schema::new(names.collect(), &self.options);
+        let names = columns.iter().map(|(name, _)| *name).chain(NUMBERED);
+        let schema = unplaced::schema(names, &self.options);
         let schema = schema.map_err(|message| self.lines.ended(message))?;
-        let schema = Arc::new(Schema { naming: Naming::Names, ..schema });
         let slots = |column: usize| schema.slots.get(column).copied().unwrap_or(Slot::Skip);
-        let mut builder = Builder::new(self.lines.path(), Format::Prmtop, &schema);
-        builder.declare(&TEXTS, &["charge", "mass"]);
-        let has_kind = schema.slots.contains(&Slot::Kind);
+        let mut atoms = UnplacedAtoms::new(self.lines.path(), Format::Prmtop, &schema);
         let residues = self.residues();
         let mut residue = 0;
         let column = |name: &str| columns.iter().find(|(own, _)| *own == name).map(|own| &own.1);
         let (names, masses) = (column("name"), column("mass"));
-        let mut weighing = Weighing::default();
         let elements = self.take(ELEMENTS, count)?;
         for atom in 0..count {
             while residues.get(residue + 1).is_some_and(|(first, _)| *first <= atom) {
@@ -245,6 +222,7 @@ impl FrameReader for Prmtop {
             }
             let label = residues.get(residue).map_or(&b""[..], |(_, label)| label);
             let label = String::from_utf8_lossy(label);
+            let builder = &mut atoms.builder;
             for (at, (name, values)) in columns.iter().enumerate() {
                 match values {
                     Values::Texts(..) => {
@@ -261,20 +239,16 @@ impl FrameReader for Prmtop {
             builder.put_text(slots(first + 1), &(residue + 1).to_string());
             builder.put_text(slots(first + 2), &label);
             (3..6).for_each(|axis| builder.put_number(slots(first + axis), f64::NAN));
-            if !has_kind {
-                let name = names.map_or(&b""[..], |names| names.text(atom));
-                let text = |values: Option<&Values>| {
-                    let value = values.and_then(|values| values.numbers().get(atom));
-                    value.map_or(String::new(), f64::to_string)
-                };
-                let (number, mass) = (text(elements.as_ref()), text(masses));
-                let key = [number.as_bytes(), mass.as_bytes(), name, label.as_bytes()].join(&b' ');
-                builder.kind_of(&key, |key| kind(key, &mut weighing));
-            }
             builder.end_row()?;
+            let text = |values: Option<&Values>| {
+                let value = values.and_then(|values| values.numbers().get(atom));
+                value.map_or(String::new(), f64::to_string)
+            };
+            let name = names.map_or(&b""[..], |names| names.text(atom));
+            let (number, mass) = (text(elements.as_ref()), text(masses));
+            atoms.kind(number.as_bytes(), mass.as_bytes(), name, label.as_bytes());
         }
-        let mut frame = builder.finish();
-        weighing.warn(&mut frame);
+        let mut frame = atoms.finish();
         frame.bonds = self.bonds(frame.len())?;
         let title = ["TITLE", "CTITLE"].into_iter().find_map(|name| self.sections.get(name));
         if let Some(Values::Texts(bytes, _)) = title {

@@ -123,7 +123,7 @@ mod tests {
             let code = code.unwrap_or_else(|| {
                 let element = Element::from_symbol(name);
                 let name = (*name).to_owned();
-                frame.kinds.table.push(Kind { name, element, virtual_site: false });
+                frame.kinds.table.push(Kind { name, element, ..Kind::default() });
                 frame.kinds.table.len() - 1
             });
             frame.kinds.codes.push(code as u32);

@@ -82,7 +82,7 @@ impl BondRules {
     ///
     /// A message: a rule names a type that the frame doesn't have.
     pub(super) fn cutoffs(&self, frame: &ParticleFrame) -> Result<Cutoffs, String> {
-        let none = Kind { name: String::new(), element: None, virtual_site: false };
+        let none = Kind::default();
         let has_types = !frame.kinds.codes.is_empty();
         let table = if has_types { &frame.kinds.table[..] } else { std::slice::from_ref(&none) };
         let Some(rules) = &self.rules else {

@@ -2,14 +2,16 @@
 //! (CIF core dictionary, <https://www.iucr.org/resources/cif/dictionaries/cif_core>).
 
 use super::declared::{Contents, Declared, Resolved};
-use super::geometry::{self, Geometry, ListedBond, NOWHERE};
+use super::geometry::{self, Geometry, Labels, ListedBond, NOWHERE};
 use super::hall::MOST;
 use super::occupancy::{Occupancies, Positions};
 use super::rows::{Rows, add_dummies, is_dummy};
 use super::symmetry::{Operation, images};
 use super::tokens::{Token, Tokens};
 use crate::{
-    Bonds, Cell, Element, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, Rgb, Role,
+    Bonds, Cell, Element, ElementSource, FileError, Format, LengthUnit, ParticleFrame, ReadOptions,
+    Rgb, Role,
+    bonds::End,
     builder::Builder,
     frame_reader::FrameReader,
     lines::Lines,
@@ -20,7 +22,6 @@ use crate::{
 };
 use glam::DVec3;
 use memchr::memmem;
-use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Bytes of an atom as a sphere: four numbers in double precision, a material and a color.
@@ -90,8 +91,8 @@ struct Atoms {
     /// Positions are fractional coordinates.
     frame: ParticleFrame,
     occupancies: Occupancies,
-    /// Row of each label before rows are dropped, if bonds are read.
-    labels: HashMap<Vec<u8>, u32>,
+    /// The atom of each label, if bonds are read.
+    labels: Labels,
 }
 
 impl Default for Block {
@@ -227,19 +228,24 @@ impl Crystal {
         let (mut rows, mut nowhere) = (Rows::new(tags.len()), 0_u64);
         let label = tags.iter().position(|tag| plain(tag) == "_atom_site_label");
         let label = label.filter(|_| self.options.reads_bonds());
-        let mut labels = HashMap::new();
+        let mut labels = Labels::new();
+        let mut add = |text: Option<Vec<u8>>, row: u32| {
+            let Some(text) = text else { return };
+            let end = labels.entry(text).and_modify(|end| *end = End::Ambiguous);
+            end.or_insert(End::Atom(row));
+        };
         while rows.read(&mut self.tokens)? {
             let unknown = |column: &usize| matches!(rows.field(*column), b"." | b"?");
             let text = label.map(|label| rows.field(label).to_vec());
             if is_dummy(&rows, calculated) {
-                labels.extend(text.map(|text| (text, NOWHERE)));
+                add(text, NOWHERE);
                 dummies += 1;
             } else if places.iter().flatten().any(unknown) {
-                labels.extend(text.map(|text| (text, NOWHERE)));
+                add(text, NOWHERE);
                 nowhere += 1;
             } else {
                 let row = builder.frame.len() as u32;
-                labels.extend(text.map(|text| (text, row)));
+                add(text, row);
                 builder.row(&self.tokens.line(), rows.fields().map(strip_uncertainty))?;
                 occupancies.read(&rows);
             }
@@ -253,6 +259,7 @@ impl Crystal {
         if !has_symbols {
             for kind in &mut frame.kinds.table {
                 kind.element = kind.element.or_else(|| element(&kind.name));
+                kind.source = ElementSource::Name;
             }
         }
         Ok(Atoms { frame, occupancies, labels })
@@ -286,6 +293,7 @@ impl Crystal {
         let (lengths, angles) = (block.lengths, block.angles);
         // Symmetry may repeat atoms in a plane beyond it, so no crystal is a layer.
         let cell = Cell::of_lengths(lengths, angles)
+            .and_then(Cell::with_volume)
             .filter(|_| !lengths.contains(&0.0))
             .ok_or_else(|| {
                 let message =
@@ -344,7 +352,7 @@ fn keep_atoms(
     keep: &[bool],
     atoms: &mut ParticleFrame,
     occupancies: &mut Occupancies,
-    labels: &mut HashMap<Vec<u8>, u32>,
+    labels: &mut Labels,
 ) -> usize {
     let others = keep.iter().filter(|keep| !**keep).count();
     if others > 0 {
@@ -355,19 +363,19 @@ fn keep_atoms(
             .iter()
             .map(|keep| if *keep { next.next().unwrap_or(NOWHERE) } else { NOWHERE })
             .collect();
-        for row in labels.values_mut().filter(|row| **row != NOWHERE) {
-            *row = places[*row as usize];
+        for row in labels.values_mut() {
+            if let End::Atom(row) = row
+                && *row != NOWHERE
+            {
+                *row = places[*row as usize];
+            }
         }
     }
     others
 }
 
 /// Removes the sites without an atom: those of occupancy 0, unless all are.
-fn leave_out_vacant(
-    atoms: &mut ParticleFrame,
-    occupancies: &mut Occupancies,
-    labels: &mut HashMap<Vec<u8>, u32>,
-) {
+fn leave_out_vacant(atoms: &mut ParticleFrame, occupancies: &mut Occupancies, labels: &mut Labels) {
     let keep = occupancies.occupied();
     if keep.contains(&true) {
         let vacant = keep_atoms(&keep, atoms, occupancies, labels);
@@ -379,11 +387,7 @@ fn leave_out_vacant(
 }
 
 /// Removes the atoms of all disorder groups but the main ones.
-fn keep_main_groups(
-    atoms: &mut ParticleFrame,
-    occupancies: &mut Occupancies,
-    labels: &mut HashMap<Vec<u8>, u32>,
-) {
+fn keep_main_groups(atoms: &mut ParticleFrame, occupancies: &mut Occupancies, labels: &mut Labels) {
     let lesser = keep_atoms(&occupancies.main_groups(), atoms, occupancies, labels);
     if lesser > 0 {
         atoms.warnings.push(format!(

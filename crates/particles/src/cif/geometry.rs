@@ -26,6 +26,9 @@ const COLUMNS: [&str; 4] = [
     "_geom_bond_site_symmetry_2",
 ];
 
+/// Rows of atoms by their labels, which several may have; [`NOWHERE`] for those that aren't drawn.
+pub(super) type Labels = HashMap<Vec<u8>, End<u32>>;
+
 /// A bond of the table.
 pub(super) struct ListedBond {
     labels: [Vec<u8>; 2],
@@ -36,8 +39,7 @@ pub(super) struct ListedBond {
 pub(super) struct Geometry<'g> {
     /// Fractional coordinates.
     pub(super) positions: &'g [DVec3],
-    /// Rows of the atoms; [`NOWHERE`] for those that aren't drawn.
-    pub(super) labels: &'g HashMap<Vec<u8>, u32>,
+    pub(super) labels: &'g Labels,
     /// Symmetry operations in the order of the file.
     pub(super) declared: &'g [Operation],
 }
@@ -78,9 +80,12 @@ impl Geometry<'_> {
         let operations = if operations.is_empty() { &identity[..] } else { operations };
         let mut bonds = Listed::default();
         for bond in listed {
-            let ends = [0, 1].map(|end| {
-                let row = self.labels.get(&bond.labels[end]).copied();
-                End::from(row.zip(self.operation(&bond.codes[end])))
+            let ends = [0, 1].map(|end| match self.labels.get(&bond.labels[end]) {
+                Some(End::Atom(row)) => {
+                    End::from(self.operation(&bond.codes[end]).map(|own| (*row, own)))
+                }
+                Some(End::Ambiguous) => End::Ambiguous,
+                Some(End::Nowhere) | None => End::Nowhere,
             });
             let Some(ends) = bonds.ends(ends) else { continue };
             if ends.iter().any(|(row, _)| *row == NOWHERE) {

@@ -160,6 +160,8 @@ impl MmCif {
                     return Ok(None);
                 }
                 Token::Block => {
+                    self.title.clear();
+                    (self.lengths, self.angles) = ([f64::NAN; 3], [f64::NAN; 3]);
                     self.items = Items::default();
                     self.component_items = Items::default();
                     self.component_title.clear();
@@ -388,6 +390,6 @@ impl FrameReader for MmCif {
     }
 
     fn more(&mut self) -> Result<bool, FileError> {
-        Ok(self.is_library && (self.is_open()? || self.has_component()) || self.sites.is_some())
+        Ok(self.is_open()? || self.has_component())
     }
 }

@@ -57,14 +57,14 @@ impl Element {
     }
 
     /// Returns the element of a label: an atomic number, or a symbol in any case, optionally followed by a
-    /// number or a charge.
+    /// number, a charge, or a note in parentheses.
     pub fn from_label(label: &str) -> Option<Self> {
-        match label.parse() {
-            Ok(number) => Self::from_number(number),
-            Err(_) => Self::from_symbol(label.trim_end_matches(|letter: char| {
-                letter.is_ascii_digit() || letter == '+' || letter == '-'
-            })),
+        if let Ok(number) = label.parse() {
+            return Self::from_number(number);
         }
+        let name = label.split('(').next().unwrap_or(label);
+        let is_suffix = |letter: char| letter.is_ascii_digit() || "+-_".contains(letter);
+        Self::from_symbol(name.trim_end_matches(is_suffix))
     }
 
     /// Returns the atomic number, 1 to 118.
@@ -161,7 +161,7 @@ mod tests {
     fn labels_of_all_kinds_find_their_element() {
         let iron = Element::from_symbol("Fe");
         assert_eq!(iron.map(Element::number), Some(26));
-        for label in ["FE", "fe", "Fe12", "26", "Fe3+", "Fe2-"] {
+        for label in ["FE", "fe", "Fe12", "26", "Fe3+", "Fe2-", "Fe_1", "Fe(Iso=57)"] {
             assert_eq!(Element::from_label(label), iron, "{label}");
         }
         assert_eq!(Element::from_label("D").map(Element::symbol), Some("H"));

@@ -57,11 +57,12 @@ const LONG: [&str; 7] = ["CL", "BR", "SI", "SE", "FE", "CU", "PT"];
 const SHORT: &str = "HCNOPSFIBKD";
 
 /// Returns whether this is a virtual site of a water model, with a charge or mass but no atom: `MW`,
-/// `M`, `EP` or `LP`, with or without a number.
+/// `M`, `EP` or `LP`, with or without a number; or a ghost of quantum chemistry, which has basis functions but no nucleus: `Bq`.
 pub(in super::super) fn is_virtual_site(name: &str, residue: &str) -> bool {
     let stem = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
     match stem {
         "MW" | "EP" | "LP" | "EPW" => true,
+        "Bq" => residue.is_empty(),
         "M" | "IW" => residue.is_empty() || is_one_of(residue, &WATER),
         _ => false,
     }

@@ -69,7 +69,7 @@ mod tests {
             ..ParticleFrame::default()
         };
         let element = Element::from_symbol("Cu");
-        frame.kinds.table.push(Kind { name: "Cu".to_owned(), element, virtual_site: false });
+        frame.kinds.table.push(Kind { name: "Cu".to_owned(), element, ..Kind::default() });
         frame.kinds.codes = Codes::Bytes(vec![0; count]);
         frame
     }

@@ -14,7 +14,7 @@ use glam::DVec3;
 /// Returns the cell whose edges are rows of a matrix; none if they are zero.
 fn cell(edges: [f64; 9]) -> Option<Cell> {
     let vectors = [0, 3, 6].map(|row| DVec3::from_slice(&edges[row..row + 3]));
-    Cell { origin: DVec3::ZERO, vectors, periodic: [true; 3] }.checked()
+    Cell { origin: DVec3::ZERO, vectors, periodic: [true; 3] }.declared()
 }
 
 /// Returns what `pass` makes of a frame that was looked for; false if there is none, or if the file ends

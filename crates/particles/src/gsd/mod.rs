@@ -216,7 +216,7 @@ impl Gsd {
         let codes = self.values("particles/typeid", count)?;
         let unknown = types.len() as f64;
         // Type names are not elements: `C` is the third type.
-        let kind = |name| Kind { name, element: None, virtual_site: false };
+        let kind = |name| Kind { name, ..Kind::default() };
         frame.kinds.table = types.into_iter().map(kind).collect();
         for row in 0..frame.len() {
             let code = codes.as_ref().map_or(0.0, |codes| codes[row]);
@@ -394,7 +394,7 @@ pub(super) fn cell(edges: &[f64]) -> Option<Cell> {
     let a = DVec3::new(x, 0.0, 0.0);
     let b = DVec3::new(xy * y, y, 0.0);
     let c = DVec3::new(xz * z, yz * z, z);
-    Cell { origin: (a + b + c) * -0.5, vectors: [a, b, c], periodic: [true; 3] }.checked()
+    Cell { origin: (a + b + c) * -0.5, vectors: [a, b, c], periodic: [true; 3] }.declared()
 }
 
 impl FrameReader for Gsd {

@@ -417,7 +417,7 @@ impl CellSource {
                     [x, y, z] => DVec3::new(x, y, z),
                     _ => DVec3::ZERO,
                 };
-                Cell { origin, vectors, periodic: *periodic }.checked()
+                Cell { origin, vectors, periodic: *periodic }.declared()
             }
             Self::Lengths(lengths, angles) => {
                 let lengths = lengths.numbers(file, frame, steps)?;

@@ -9,9 +9,9 @@ use crate::lines::{Line, Lines};
 use crate::naming::{Weighing, drop_uncertain_elements, kind, of_atom};
 use crate::schema::{Naming, Schema};
 use crate::{
-    Bonds, Cell, Element, FileError, Format, Kind, LengthUnit, NumberColumn, ParticleFrame,
-    ReadOptions, Role, builder::Builder, error::listed, fields::Fields, frame_reader::FrameReader,
-    number, source::Source,
+    Bonds, Cell, Element, ElementSource, FileError, Format, Kind, LengthUnit, NumberColumn,
+    ParticleFrame, ReadOptions, Role, builder::Builder, error::listed, fields::Fields,
+    frame_reader::FrameReader, number, source::Source,
 };
 use glam::DVec3;
 use std::borrow::Cow;
@@ -166,6 +166,7 @@ impl Data {
         let ids = frame.numbers.iter().find(|column| column.name == velocities::ID);
         let Some(ids) = ids.map(|ids| Numbering::of(&ids.values)) else { return Ok(()) };
         let mut values = [(); ELLIPSOID.len()].map(|()| vec![0.0; frame.len()]);
+        let mut unclear = 0_u64;
         while !self.at_section()? {
             let Some(line) = Self::line(&mut self.lines)? else { break };
             let mut fields = Fields::blanks(content(line.bytes).unwrap_or_default());
@@ -174,24 +175,20 @@ impl Data {
                 let error = || line.whole("not the columns of an ellipsoid").with_help(help);
                 fields.next().ok_or_else(error)
             };
-            let number = field()?;
-            let name = String::from_utf8_lossy(number);
-            let row = match ids.row(&line, number)? {
-                End::Atom(row) => row,
-                End::Nowhere => {
-                    let message = format!("an ellipsoid of atom {name}, but there is no such atom");
-                    let error = line.error_at(number, message);
-                    return Err(error.with_help("remove the row, or add the atom"));
-                }
-                End::Ambiguous => {
-                    let message = format!("several atoms have the number {name}");
-                    let error = line.error_at(number, message);
-                    return Err(error.with_help("number the atoms, each once"));
-                }
+            let End::Atom(row) = ids.row(&line, field()?)? else {
+                unclear += 1;
+                continue;
             };
             for column in &mut values {
                 column[row as usize] = line.number(field()?)?;
             }
+        }
+        if unclear > 0 {
+            let (are, of) =
+                if unclear == 1 { ("ellipsoid is", "its") } else { ("ellipsoids are", "their") };
+            frame.warnings.push(format!(
+                "{unclear} {are} left out: no atom has {of} number, or several have it"
+            ));
         }
         for (name, values) in ELLIPSOID.into_iter().zip(values) {
             frame.numbers.push(NumberColumn { name: name.to_owned(), values });
@@ -461,9 +458,9 @@ impl Head {
     fn cell(&self) -> Option<Cell> {
         if let [Some(a), Some(b), Some(c), origin] = self.general {
             let origin = origin.unwrap_or(DVec3::ZERO);
-            return Cell { origin, vectors: [a, b, c], periodic: [true; 3] }.checked();
+            return Cell { origin, vectors: [a, b, c], periodic: [true; 3] }.declared();
         }
-        self.has_box.then(|| tilted(self.low, self.high, self.tilt)).and_then(Cell::checked)
+        self.has_box.then(|| tilted(self.low, self.high, self.tilt)).and_then(Cell::declared)
     }
 
     /// Returns the types with the elements of their names and masses. None have one if all masses of elements are 1, which is
@@ -478,10 +475,12 @@ impl Head {
             let names = [own.name.as_str(), kind.name.as_str()];
             let named = names.into_iter().find_map(|name| Some((name, own.named(name)?)));
             let (name, element) = named.map_or(("", None), |(name, element)| (name, Some(element)));
-            let weighed = weighing.weigh(Kind { element, ..kind.clone() }, name, own.mass);
+            let source = ElementSource::Name;
+            let named = Kind { element, source, ..kind.clone() };
+            let weighed = weighing.weigh(named, name, own.mass);
             heavy |= weighed.element.is_some() && own.mass > 2.5;
             certain |= weighed.element.is_some() && (element.is_some() || !own.is_whole());
-            Kind { element: weighed.element.or(kind.element), ..weighed }
+            if weighed.element.is_some() { weighed } else { kind.clone() }
         });
         let kinds: Vec<Kind> = kinds.collect();
         let is_charged = frame.columns.iter().any(|name| name == "q");

@@ -132,7 +132,7 @@ impl Dump {
         for (edge, flag) in periodic.iter_mut().zip(words) {
             *edge = flag.starts_with('p');
         }
-        Ok(Cell { periodic, ..cell }.checked())
+        Ok(Cell { periodic, ..cell }.declared())
     }
 
     fn ended(&self, section: &str) -> FileError {

@@ -43,7 +43,7 @@ pub(super) fn head(lines: &mut Lines, units: &mut LengthUnit) -> Result<Option<H
             }
             "box" => {
                 let cell = bounds(lines)?;
-                head.cell = Cell { periodic, ..cell }.checked();
+                head.cell = Cell { periodic, ..cell }.declared();
             }
             "keywords" => {
                 let names = values(&line).skip(1);

@@ -4,6 +4,7 @@
 mod header;
 
 use self::header::{Header, Variable, text};
+use crate::arrays::{RowLayout, UsedArrays};
 use crate::binary::{BinaryFile, Numbers};
 use crate::scalar::{Order, Scalar};
 use crate::{
@@ -148,7 +149,7 @@ impl NetCdf {
         let origin = self.values(origin)?.map_or(DVec3::ZERO, DVec3::from_array);
         let cell =
             lengths.and_then(|lengths| Cell::of_lengths(lengths, angles.unwrap_or([90.0; 3])));
-        Ok(cell.and_then(|cell| Cell { origin: cell.origin + origin, ..cell }.checked()))
+        Ok(cell.map(|cell| Cell { origin: cell.origin + origin, ..cell }))
     }
 
     /// Returns whether the coordinates of the next frame are in the file.
@@ -165,28 +166,15 @@ impl FrameReader for NetCdf {
             return Ok(None);
         }
         let schema = self.schema.clone();
-        let mut blocks = Vec::new();
-        // Only variables whose columns are used are read.
-        let mut slots = &schema.slots[..];
-        for column in &self.columns {
-            let (own, rest) = slots.split_at(column.width.min(slots.len()));
-            slots = rest;
-            if own.iter().any(|slot| *slot != crate::schema::Slot::Skip) {
-                let slab = column.slab;
-                let bytes = self.file.bytes(slab.at(self.next), slab.bytes())?;
-                blocks.push((own, slab, column.width, bytes));
-            }
+        let mut arrays = UsedArrays::new(&schema.slots);
+        for &Column { slab, width } in &self.columns {
+            let Slab { scalar, scale, .. } = slab;
+            let layout = RowLayout { scalar, order: Order::Big, width, scale };
+            arrays.add(layout, || self.file.bytes(slab.at(self.next), slab.bytes()))?;
         }
         let mut builder = Builder::new(self.file.path(), Format::NetCdf, &schema);
         for atom in 0..self.atoms as usize {
-            for (slots, slab, width, bytes) in &blocks {
-                let size = slab.scalar.size();
-                for (place, &slot) in slots.iter().enumerate() {
-                    let at = (atom * width + place) * size;
-                    let value = slab.scalar.read(bytes.get(at..).unwrap_or_default(), Order::Big);
-                    builder.put_number(slot, value * slab.scale);
-                }
-            }
+            arrays.put_row(&mut builder, atom);
             builder.end_row()?;
         }
         let cell = self.cell()?;

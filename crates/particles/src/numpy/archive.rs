@@ -415,8 +415,7 @@ impl Npz {
             for kind in self.rows(&name, 1, count)? {
                 builder.kind_of(kind.to_string().as_bytes(), |name| Kind {
                     name: name.to_owned(),
-                    element: None,
-                    virtual_site: false,
+                    ..Kind::default()
                 });
             }
         }

@@ -59,7 +59,7 @@ fn cell(shape: [u64; 2], values: &[f64], frame: &ParticleFrame) -> Option<Cell> 
     let vector = |at: usize| DVec3::from_slice(&values[at..at + 3]);
     let diagonal =
         |lengths: DVec3| [DVec3::X * lengths.x, DVec3::Y * lengths.y, DVec3::Z * lengths.z];
-    let at_corner = |vectors, origin| Cell { origin, vectors, periodic: [true; 3] }.checked();
+    let at_corner = |vectors, origin| Cell { origin, vectors, periodic: [true; 3] }.declared();
     match (shape, values.len()) {
         ([6, 1] | [1, 6], 6) if values[3..].iter().all(|angle| *angle > LEAST_ANGLE) => {
             let [a, b, c] = vector(0).to_array();

@@ -221,7 +221,9 @@ fn drop_rows(
         return Err(FileError::whole_file(path, message));
     }
     if sites > 0 {
-        warnings.add(&format!("{sites} sites of water models without an atom are not drawn"));
+        warnings.add(&format!(
+            "{sites} sites without an atom, of water models or ghosts, are not drawn"
+        ));
     }
     if dropped > 0 {
         warnings.add(&format!("{dropped} of {count} rows were dropped: {reasons}"));
@@ -276,8 +278,7 @@ mod tests {
     #[test]
     fn additional_columns_of_spheres_take_bytes() {
         let plain = ParticleFrame { x: vec![0.0; 10], ..ParticleFrame::default() };
-        let kind =
-            |name: &str, element| Kind { name: name.to_owned(), element, virtual_site: false };
+        let kind = |name: &str, element| Kind { name: name.to_owned(), element, ..Kind::default() };
         let with = |change: &dyn Fn(&mut ParticleFrame)| {
             let mut frame = plain.clone();
             change(&mut frame);

@@ -105,7 +105,7 @@ impl Polyhedra {
         let mut is_center = vec![false; count];
         for rule in &self.rules {
             let kinds = &particles.frame.kinds;
-            let none = Kind { name: String::new(), element: None, virtual_site: false };
+            let none = Kind::default();
             let no_types = std::slice::from_ref(&none);
             let table = if kinds.codes.is_empty() { no_types } else { &kinds.table };
             let [centers, corners] = match rule.kinds(table, "polyhedra") {

@@ -14,7 +14,7 @@ fn perovskite() -> Particles {
     for name in ["Ti", "O"] {
         let element = Element::from_symbol(name);
         let name = format!("{name}1");
-        particles.frame.kinds.table.push(Kind { name, element, virtual_site: false });
+        particles.frame.kinds.table.push(Kind { name, element, ..Kind::default() });
     }
     particles.frame.kinds.codes = Codes::Bytes(vec![0, 1, 1, 1]);
     particles

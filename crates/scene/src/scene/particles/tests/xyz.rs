@@ -29,7 +29,7 @@ fn plain_files_have_symbols_numbers_or_neither() {
     let water = particles("4\nTIP4P\nO 0 0 0\nH 1 0 0\nH 0 1 0\nM 0 0 .1\n");
     assert_eq!(water.spheres.len(), 3);
     assert!(
-        water.frame.warnings[0].contains("1 sites of water models"),
+        water.frame.warnings[0].contains("1 sites without an atom"),
         "{:?}",
         water.frame.warnings
     );
