@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! noise, render, denoise      tiles, their error, and rounds over them
-//! layers, overlay, compose    pictures, and the scenes that they are of
+//! layers, overlay, compose    images, and the scenes that they are of
 //! checkpoint, prepared, split files
 //! ```
 
@@ -23,7 +23,7 @@ pub use spherule_core::internals::{
 // Particle files, and what their readers share with scene files.
 pub use spherule_particles::internals::{memory, suggest};
 
-// What users write, and pictures.
+// What users write, and images.
 #[cfg(feature = "drawing")]
 pub use spherule_image::graphics;
 pub use spherule_image::{Image, atomic, color, image};

@@ -1,6 +1,6 @@
-//! Vector graphics: filled polygons and text, drawn over pictures or written to SVG and PDF files.
+//! Vector graphics: filled polygons and text, drawn over images or written to SVG and PDF files.
 //!
-//! A [`Drawing`] is a list of shapes in pixels, from the top left corner. Over a picture, each pixel gets
+//! A [`Drawing`] is a list of shapes in pixels, from the top left corner. Over an image, each pixel gets
 //! the exact fraction of its area that a shape covers. The font is included in the program, since the
 //! system may have none.
 

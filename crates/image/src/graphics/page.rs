@@ -1,4 +1,4 @@
-//! Pages: a picture with a drawing over it, as a file.
+//! Pages: an image with a drawing over it, as a file.
 
 use super::{Drawing, pdf, svg};
 use crate::image::tone::DisplayTransform;
@@ -21,20 +21,20 @@ pub enum Format {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PageError {
-    /// The picture cannot be encoded or decoded.
+    /// The image cannot be encoded or decoded.
     #[error(transparent)]
     Image(#[from] ImageError),
-    /// The picture on the page, or the font, is damaged: an error of the program.
+    /// The image on the page, or the font, is damaged: an error of the program.
     #[error("cannot write the page: {0}")]
     Content(String),
 }
 
-/// A picture with a drawing over it.
+/// An image with a drawing over it.
 #[derive(Clone, Copy, Debug)]
 pub struct Page<'a> {
     /// Width and height in pixels.
     pub size: (u32, u32),
-    /// The picture under the drawing, as a PNG file of this size.
+    /// The image under the drawing, as a PNG file of this size.
     pub picture: Option<&'a [u8]>,
     /// The drawing.
     pub drawing: &'a Drawing,
@@ -90,7 +90,7 @@ impl Drawing {
 }
 
 impl Page<'_> {
-    /// Returns the content of a file in a format of vectors; a page in PNG is its picture.
+    /// Returns the content of a file in a format of vectors; a page in PNG is its image.
     ///
     /// # Errors
     /// [`PageError`], an error of the program.

@@ -240,7 +240,7 @@ impl EmbeddedFont {
     }
 }
 
-/// Writes the picture of a PNG file with 8 bits per channel, and returns its object.
+/// Writes the image of a PNG file with 8 bits per channel, and returns its object.
 fn write_picture(pdf: &mut Pdf, ids: &mut Ids, png: &[u8]) -> Result<Ref, PageError> {
     let damaged = |error: png::DecodingError| PageError::Content(format!("the picture: {error}"));
     let mut decoder = png::Decoder::new(std::io::Cursor::new(png));

@@ -1,4 +1,4 @@
-//! Drawing over pictures, with the exact coverage of each pixel.
+//! Drawing over images, with the exact coverage of each pixel.
 
 use super::font::{glyphs, outline};
 use super::{Drawing, Polygon, Shape, Text};
@@ -8,12 +8,12 @@ use ab_glyph::{OutlineCurve, Point, point};
 use ab_glyph_rasterizer::Rasterizer;
 use glam::DVec2;
 
-/// Maximum area of a shape beside that of the picture, and in pixels; shapes that are larger than both are not drawn.
+/// Maximum area of a shape beside that of the image, and in pixels; shapes that are larger than both are not drawn.
 const MAX_SHARE: f64 = 4.0;
 const MAX_AREA: f64 = 1_048_576.0;
 
 impl Drawing {
-    /// Draws over a picture; shapes outside are cut off. Colors are linear like the picture's: exposure
+    /// Draws over an image; shapes outside are cut off. Colors are linear like the image's: exposure
     /// and tone affect both.
     pub fn draw_over(&self, image: &mut Image) {
         for shape in &self.shapes {

@@ -1,4 +1,4 @@
-//! Additional channels of a picture: the layers of an EXR file.
+//! Additional channels of an image: the layers of an EXR file.
 
 use super::ImageError;
 
@@ -9,7 +9,7 @@ const MAX_NAME_LENGTH: usize = 31;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
     /// Name in the file: the layer's name, a dot, and the part, as in `normal.X`. 1 to 31 printable
-    /// ASCII characters without spaces, and not `R`, `G` or `B`, which are the picture.
+    /// ASCII characters without spaces, and not `R`, `G` or `B`, which are the image.
     pub name: String,
     /// Values, row by row from the top left.
     pub values: Values,
@@ -42,7 +42,7 @@ impl Values {
 /// Name of the alpha channel: the fraction of each pixel that is not background, 0..=1.
 pub(super) const ALPHA: &str = "A";
 
-/// Returns an error for channels that cannot be stored with a picture of `pixels` pixels.
+/// Returns an error for channels that cannot be stored with an image of `pixels` pixels.
 pub(super) fn check(channels: &[Channel], pixels: usize) -> Result<(), ImageError> {
     for (i, Channel { name, values }) in channels.iter().enumerate() {
         let refuse = |reason| Err(ImageError::Channel { name: name.clone(), reason });

@@ -18,7 +18,7 @@ pub(super) fn decode<T: Copy + Into<usize>>(
     codes.chunks_exact(channels).map(color).collect()
 }
 
-/// Returns the codes of a picture, row by row: RGB, or RGBA with alpha. With alpha the picture's colors
+/// Returns the codes of an image, row by row: RGB, or RGBA with alpha. With alpha the image's colors
 /// are premultiplied; the codes are not.
 pub(super) fn encode(image: &Image, alpha: Option<&[f32]>, options: &WriteOptions) -> Vec<u16> {
     match alpha {

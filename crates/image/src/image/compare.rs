@@ -1,4 +1,4 @@
-//! Comparison of a picture with a reference.
+//! Comparison of an image with a reference.
 
 use super::Image;
 use crate::elementary::log10;
@@ -9,12 +9,12 @@ const RELATIVE_EPSILON: f64 = 1e-2;
 
 /// The result of [`compare()`], in linear radiance.
 ///
-/// A value is one channel of one pixel. Values that are not finite in either picture are only counted
+/// A value is one channel of one pixel. Values that are not finite in either image are only counted
 /// and excluded from all other statistics: a comparison is valid only if [`Comparison::non_finite`] is
 /// 0.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Comparison {
-    /// Number of pixels of each picture.
+    /// Number of pixels of each image.
     pub pixels: u64,
     /// Root of the mean squared difference of values.
     pub rmse: f64,
@@ -25,7 +25,7 @@ pub struct Comparison {
     pub psnr: f64,
     /// The largest absolute difference of values.
     pub max_difference: Difference,
-    /// Mean of `a - b` over pixels, each the mean of its channels: positive if the picture is too
+    /// Mean of `a - b` over pixels, each the mean of its channels: positive if the image is too
     /// bright.
     pub bias: f64,
     /// Standard error of `bias`, for differences independent between pixels; infinite (in JSON, null)
@@ -33,11 +33,11 @@ pub struct Comparison {
     pub bias_standard_error: f64,
     /// Number of pixels with at least one different value; NaN equals NaN.
     pub differing_pixels: u64,
-    /// Number of values that are NaN or infinite in at least one of the pictures.
+    /// Number of values that are NaN or infinite in at least one of the images.
     pub non_finite: u64,
 }
 
-/// A difference between two pictures with its position; of equal ones the first.
+/// A difference between two images with its position; of equal ones the first.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Difference {
     /// Absolute value.
@@ -50,7 +50,7 @@ pub struct Difference {
     pub channel: u8,
 }
 
-/// The reason why two pictures cannot be compared.
+/// The reason why two images cannot be compared.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CompareError {
@@ -60,13 +60,13 @@ pub enum CompareError {
         sizes[0].0, sizes[0].1, sizes[1].0, sizes[1].1
     )]
     Sizes {
-        /// Width and height of the picture and of the reference.
+        /// Width and height of the image and of the reference.
         sizes: [(u32, u32); 2],
     },
-    /// The number of pixels of a picture differs from width times height.
+    /// The number of pixels of an image differs from width times height.
     #[error("the number of pixels of a picture differs from its size; make it by Image::new")]
     Shape,
-    /// No value is finite in both pictures.
+    /// No value is finite in both images.
     #[error("no value is finite in both pictures; render them again")]
     NothingFinite,
 }
@@ -85,7 +85,7 @@ struct Sums {
     non_finite: u64,
 }
 
-/// Compares picture `a` with the reference `b`, in linear values.
+/// Compares image `a` with the reference `b`, in linear values.
 ///
 /// # Errors
 /// [`CompareError`] if the sizes differ, or if there is nothing to compare.

@@ -1,4 +1,4 @@
-//! Errors of picture files.
+//! Errors of image files.
 
 use super::Format;
 use super::tone::EXPOSURES;
@@ -8,7 +8,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The reason why a picture could not be created, read or written.
+/// The reason why an image could not be created, read or written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImageError {
@@ -50,7 +50,7 @@ pub enum ImageError {
         /// Error of the system, or how to fix it.
         reason: io::Error,
     },
-    /// The format cannot store the picture.
+    /// The format cannot store the image.
     #[error(
         "cannot write the picture as {format}: {reason}; choose another format or a smaller picture"
     )]
@@ -80,9 +80,9 @@ pub enum ImageError {
          at least one"
     )]
     Shape {
-        /// Width of the picture in pixels.
+        /// Width of the image in pixels.
         width: u32,
-        /// Height of the picture in pixels.
+        /// Height of the image in pixels.
         height: u32,
         /// Actual number of pixels.
         count: usize,
@@ -93,9 +93,9 @@ pub enum ImageError {
         .shortage.as_ref().map_or(String::new(), |shortage| format!(": it needs {shortage}"))
     )]
     Memory {
-        /// Width of the picture in pixels.
+        /// Width of the image in pixels.
         width: u32,
-        /// Height of the picture in pixels.
+        /// Height of the image in pixels.
         height: u32,
         /// The missing memory, if it is known.
         shortage: Option<Shortage>,

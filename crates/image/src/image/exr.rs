@@ -1,7 +1,7 @@
 //! EXR: linear 32-bit floats, compressed without loss.
 //!
 //! The metadata is written to the standard attribute `comments`, one line per entry: the encoder writes
-//! several custom attributes in an order that changes from run to run, but equal pictures should be
+//! several custom attributes in an order that changes from run to run, but equal images should be
 //! equal files.
 
 use super::{
@@ -49,7 +49,7 @@ impl Canvas {
 pub(super) fn decode(bytes: &[u8]) -> Result<Image, String> {
     let meta = open(bytes)?;
     for header in &meta.headers {
-        // A block of rows, compressed and decompressed, can be the whole picture.
+        // A block of rows, compressed and decompressed, can be the whole image.
         let bytes = size_of::<[f32; 3]>() + 2 * header.channels.bytes_per_pixel;
         let (width, height) = (header.layer_size.width(), header.layer_size.height());
         claimed_area(width as u64, height as u64, bytes as u64)?;
@@ -121,7 +121,7 @@ pub(super) fn metadata(bytes: &[u8]) -> Result<Metadata, String> {
     Ok(Metadata::from_lines(text.lines()))
 }
 
-/// Encodes a picture as channels `R`, `G`, `B` of 32-bit floats, and additional channels.
+/// Encodes an image as channels `R`, `G`, `B` of 32-bit floats, and additional channels.
 pub(super) fn encode(
     image: &Image,
     channels: &[Channel],

@@ -16,7 +16,7 @@ use std::{
 /// Maximum number of pixels in a header if the file's length does not bound it: 3 GiB of floats.
 const MAX_PIXELS: u64 = 1 << 28;
 
-/// Maximum length of a file in bytes: more than a picture of that many pixels takes in any format.
+/// Maximum length of a file in bytes: more than an image of that many pixels takes in any format.
 const MAX_BYTES: u64 = 1 << 33;
 
 /// Message for a file on which a decoder panics.
@@ -25,7 +25,7 @@ pub(super) const DAMAGED: &str = "the file is damaged; save it again";
 /// Maximum length of a magic number.
 const MAGIC_LENGTH: u64 = 16;
 
-/// A picture file format.
+/// An image file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Format {
@@ -194,7 +194,7 @@ impl Format {
         catch_unwind(|| decode(bytes)).unwrap_or_else(|_| Err(DAMAGED.into()))
     }
 
-    /// Encodes a picture whose shape and options have been checked, with its channels if the format
+    /// Encodes an image whose shape and options have been checked, with its channels if the format
     /// supports them.
     pub(super) fn encode(
         self,
@@ -249,7 +249,7 @@ impl fmt::Display for Format {
 }
 
 /// Returns the format and the content of a file. Content of an unknown format is not read to its end,
-/// nor content that is longer than any picture or than the available memory.
+/// nor content that is longer than any image or than the available memory.
 pub(super) fn read_file(path: &Path) -> Result<(Format, Vec<u8>), ImageError> {
     let unreadable = |reason: io::Error| ImageError::Read { path: path.to_owned(), reason };
     let mut file = File::open(path).map_err(unreadable)?;

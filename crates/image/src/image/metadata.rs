@@ -1,4 +1,4 @@
-//! Metadata of picture files: settings, seed, version.
+//! Metadata of image files: settings, seed, version.
 
 use super::{Format, ImageError, exr, format, png, ppm, raster};
 use std::{fmt::Write as _, panic::catch_unwind, path::Path};
@@ -106,7 +106,7 @@ fn unescape(text: &str) -> String {
     std::iter::from_fn(next).collect()
 }
 
-/// Reads the metadata of a picture file; PFM and Radiance HDR have none.
+/// Reads the metadata of an image file; PFM and Radiance HDR have none.
 ///
 /// Entries are in file order; in a PNG file of another program all Latin-1 texts come first.
 ///
@@ -125,7 +125,7 @@ pub fn read_metadata(path: impl AsRef<Path>) -> Result<Metadata, ImageError> {
         Format::Webp => raster::webp_metadata(&bytes),
         Format::Pfm | Format::Radiance => Ok(Metadata::new()),
     };
-    // As for pictures: a decoder of another crate may panic.
+    // As for images: a decoder of another crate may panic.
     let read = catch_unwind(read).unwrap_or_else(|_| Err(format::DAMAGED.to_owned()));
     read.map_err(|reason| ImageError::malformed(path, format, reason))
 }

@@ -1,10 +1,10 @@
-//! Pictures: linear RGB in memory, and reading and writing of files.
+//! Images: linear RGB in memory, and reading and writing of files.
 //!
 //! A render is an [`Image`] of linear radiance. [`Image::write`] writes it to a file: unchanged (EXR,
 //! PFM), or exposed, tone-mapped and sRGB-encoded for a display (all others). [`Image::read`] is the
 //! inverse, for environment maps and for [`compare()`]. Files are written atomically
 //! ([`atomic::write_atomically`]), and [`check_writable`] detects an unwritable destination before
-//! hours are spent on the picture.
+//! hours are spent on the image.
 
 mod channel;
 mod codes;
@@ -37,7 +37,7 @@ pub use self::png::{Compression, encode_codes};
 use crate::{atomic, memory};
 use std::path::Path;
 
-/// A picture in linear RGB with the primaries of sRGB.
+/// An image in linear RGB with the primaries of sRGB.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
     /// Width in pixels, 1 or more.
@@ -50,7 +50,7 @@ pub struct Image {
 }
 
 impl Image {
-    /// Creates a picture from pixels, row by row from the top left.
+    /// Creates an image from pixels, row by row from the top left.
     ///
     /// # Errors
     /// [`ImageError::Shape`] if there are not exactly `width * height` pixels, or none at all.
@@ -60,7 +60,7 @@ impl Image {
         Ok(image)
     }
 
-    /// Creates a picture of one color.
+    /// Creates an image of one color.
     ///
     /// # Errors
     /// [`ImageError::Shape`] if `width` or `height` is 0, and [`ImageError::Memory`] if the pixels need
@@ -78,7 +78,7 @@ impl Image {
     }
 
     /// Returns the pixel in column `x` from the left and row `y` from the top; `None` outside of the
-    /// picture.
+    /// image.
     pub fn pixel(&self, x: u32, y: u32) -> Option<[f32; 3]> {
         let index = y as usize * self.width as usize + x as usize;
         if x < self.width { self.pixels.get(index).copied() } else { None }
@@ -87,12 +87,12 @@ impl Image {
     /// Returns the number of values that are NaN or infinite: 0 for a valid render.
     ///
     /// PNG and PPM cannot store such values ([`tone::DisplayTransform`] maps them to codes), so callers
-    /// that write a picture can warn of them.
+    /// that write an image can warn of them.
     pub fn count_non_finite(&self) -> u64 {
         self.pixels.iter().flatten().filter(|value| !value.is_finite()).count() as u64
     }
 
-    /// Reads a picture in any [`Format`], which is recognized by content, not by name.
+    /// Reads an image in any [`Format`], which is recognized by content, not by name.
     ///
     /// Integer codes are decoded by the sRGB curve; floats are linear already. Gray becomes RGB, and
     /// alpha is dropped without dividing by it. Of an EXR file the first part with channels `R`, `G`,
@@ -116,7 +116,7 @@ impl Image {
     /// is complete or absent: see [`atomic::write_atomically`].
     ///
     /// # Errors
-    /// [`ImageError::UnknownSuffix`]; [`ImageError::Shape`] if size and pixels of the picture are
+    /// [`ImageError::UnknownSuffix`]; [`ImageError::Shape`] if size and pixels of the image are
     /// inconsistent; [`ImageError::Exposure`] and [`ImageError::Metadata`] for invalid options;
     /// [`ImageError::Encode`] if the format cannot store the picture; [`ImageError::Write`] if the file
     /// cannot be written.
@@ -128,7 +128,7 @@ impl Image {
     /// that [has alpha](Format::has_alpha) with the channel `A`; without additional channels the same
     /// as [`Image::write`].
     ///
-    /// With the alpha channel `A`, the picture's colors are premultiplied. EXR stores them like this,
+    /// With the alpha channel `A`, the image's colors are premultiplied. EXR stores them like this,
     /// the other formats store straight colors.
     ///
     /// # Errors
@@ -200,7 +200,7 @@ mod tests {
     use std::fs;
     use std::num::NonZeroU16;
 
-    /// A picture of distinct values in 0..1.
+    /// An image of distinct values in 0..1.
     pub(super) fn ramp(width: u32, height: u32) -> Image {
         let count = width as usize * height as usize;
         let value = |index: usize| index as f32 / (3 * count) as f32;

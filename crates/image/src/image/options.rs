@@ -1,4 +1,4 @@
-//! Options for writing pictures.
+//! Options for writing images.
 
 use super::tone::DisplayTransform;
 use super::tone::Tone;
@@ -17,7 +17,7 @@ pub struct WriteOptions {
     /// Variant of PPM.
     pub ppm: PpmEncoding,
     /// Exposure in stops, in [`EXPOSURES`](super::tone::EXPOSURES): formats of
-    /// codes store the picture times 2 to this power.
+    /// codes store the image times 2 to this power.
     pub exposure: f64,
     /// Tone curve from exposed radiance to display-linear values, for formats of codes.
     pub tone: Tone,

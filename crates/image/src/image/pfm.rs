@@ -37,7 +37,7 @@ fn scale(words: &mut Words<'_>) -> Result<f32, String> {
         .ok_or_else(|| "its scale is not a nonzero number; write -1.0 for little-endian".into())
 }
 
-/// Encodes a picture as little-endian RGB.
+/// Encodes an image as little-endian RGB.
 pub(super) fn encode(image: &Image) -> Vec<u8> {
     let mut bytes = format!("PF\n{} {}\n-1.0\n", image.width, image.height).into_bytes();
     bytes.reserve_exact(image.pixels.len() * 12);

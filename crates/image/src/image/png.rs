@@ -24,7 +24,7 @@ const PIXEL_BYTES: u64 = 8 + 8 + 12;
 
 type MemoryReader<'a> = Reader<Cursor<&'a [u8]>>;
 
-/// Decodes any color type and depth; the first picture if there are several.
+/// Decodes any color type and depth; the first image if there are several.
 ///
 /// Codes are interpreted as sRGB, regardless of the chunks `gAMA`, `cHRM` and `iCCP`.
 pub(super) fn decode(bytes: &[u8]) -> Result<Image, String> {
@@ -85,7 +85,7 @@ pub(super) fn metadata(bytes: &[u8]) -> Result<Metadata, String> {
         .map_err(|error| damaged(&error))
 }
 
-/// Encodes a picture as RGB, or as RGBA with alpha: then the picture's colors are premultiplied, and
+/// Encodes an image as RGB, or as RGBA with alpha: then the image's colors are premultiplied, and
 /// the file's are not.
 pub(super) fn encode(
     image: &Image,

@@ -9,7 +9,7 @@ use super::{
 };
 use std::fmt::Write as _;
 
-/// Decodes the first picture of a file, and ignores further data.
+/// Decodes the first image of a file, and ignores further data.
 pub(super) fn decode(bytes: &[u8]) -> Result<Image, String> {
     let mut words = Words::after_magic(bytes);
     let width = words.number("the width", u32::MAX)?;
@@ -52,7 +52,7 @@ fn colors(codes: &[u16], maximum: u16) -> Result<Vec<[f32; 3]>, String> {
     Ok(triples.map(|triple| triple.map(|code| table[usize::from(code)])).collect())
 }
 
-/// Encodes a picture; the metadata is in comments after the magic number.
+/// Encodes an image; the metadata is in comments after the magic number.
 pub(super) fn encode(image: &Image, options: &WriteOptions) -> Vec<u8> {
     let magic = match options.ppm {
         PpmEncoding::Plain => "P3",

@@ -96,7 +96,7 @@ pub(super) fn webp_metadata(bytes: &[u8]) -> Result<Metadata, String> {
     Ok(xmp::metadata(&packet.map_err(|error| damaged(&error))?.unwrap_or_default()))
 }
 
-/// Decodes the first picture: codes by the sRGB curve, floats unchanged. Alpha is dropped.
+/// Decodes the first image: codes by the sRGB curve, floats unchanged. Alpha is dropped.
 pub(super) fn decode_tiff(bytes: &[u8]) -> Result<Image, String> {
     let mut decoder = TiffDecoder::new(Cursor::new(bytes)).map_err(|error| damaged(&error))?;
     let (width, height) = decoder.dimensions();
@@ -129,7 +129,7 @@ pub(super) fn decode_tiff(bytes: &[u8]) -> Result<Image, String> {
     Ok(Image { width, height, pixels })
 }
 
-/// Encodes a picture as JPEG, with a color for each pixel.
+/// Encodes an image as JPEG, with a color for each pixel.
 pub(super) fn encode_jpeg(image: &Image, options: &WriteOptions) -> Result<Vec<u8>, String> {
     let side = |side: u32| {
         let most = u16::MAX;
@@ -163,7 +163,7 @@ fn xmp_segment(metadata: &Metadata) -> Option<Vec<u8>> {
     }
 }
 
-/// Encodes a picture as TIFF, compressed by Deflate.
+/// Encodes an image as TIFF, compressed by Deflate.
 pub(super) fn encode_tiff(
     image: &Image,
     alpha: Option<&[f32]>,
@@ -227,7 +227,7 @@ where
     directory.write_data(codes)
 }
 
-/// Encodes a picture as WebP without loss.
+/// Encodes an image as WebP without loss.
 pub(super) fn encode_webp(
     image: &Image,
     alpha: Option<&[f32]>,

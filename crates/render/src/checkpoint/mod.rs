@@ -53,18 +53,18 @@ pub struct Origin {
     pub folder: OsString,
     /// The arguments of the command; empty if the render was started from code.
     pub arguments: Vec<OsString>,
-    /// Metadata and layers of the picture, to write it without the scene.
+    /// Metadata and layers of the image, to write it without the scene.
     pub caption: Caption,
 }
 
-/// Data of a picture besides its pixels: metadata and layers.
+/// Data of an image besides its pixels: metadata and layers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Caption {
     /// The scene's title; empty if there is none.
     pub title: String,
     /// Looks of the scene: names and values.
     pub looks: Vec<(String, String)>,
-    /// True if something is drawn over the picture that takes the scene: a cell, a background.
+    /// True if something is drawn over the image that takes the scene: a cell, a background.
     pub drawn_over: bool,
     /// The drawing of the scene's annotations, in the bytes of `graphics::Drawing`.
     pub annotations: Vec<u8>,

@@ -170,7 +170,7 @@ fn absurd_sizes_take_no_memory() {
     let mut large = header();
     (large.region.width, large.region.height) = (u32::MAX, u32::MAX);
     assert_eq!(forge(postcard::to_stdvec(&(PROGRAM, &origin, large)).unwrap()), Some(true));
-    // A picture without its sums.
+    // An image without its sums.
     assert_eq!(forge(postcard::to_stdvec(&(PROGRAM, &origin, header())).unwrap()), Some(true));
     // A text of 2^63 bytes.
     assert_eq!(forge(vec![0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x7f]), Some(true));

@@ -196,7 +196,7 @@ pub fn leave_room(scene: &mut Scene, turns: bool) {
     }
 }
 
-/// Leaves room for annotations, and frames the cell that is drawn; for a picture at an angle of a turntable, in
+/// Leaves room for annotations, and frames the cell that is drawn; for an image at an angle of a turntable, in
 /// radians, places the camera. The scene's size is known.
 ///
 /// # Errors

@@ -9,7 +9,7 @@
 //! light      lights and ground of the preset, which depend on the camera
 //! ```
 //!
-//! [`place`] is all but the first, for a picture whose size is known.
+//! [`place`] is all but the first, for an image whose size is known.
 
 mod annotations;
 mod camera;

@@ -27,7 +27,7 @@ const OUTLIERS: f32 = 16.0;
 /// Edge of the squares over which the deviation of neighbors is averaged.
 const DEVIATION_EDGE: usize = 7;
 
-/// Pixels of a tile and its margins, from row to row. Pixels outside of the picture have no weight.
+/// Pixels of a tile and its margins, from row to row. Pixels outside of the image have no weight.
 #[derive(Debug, Default)]
 pub(super) struct Columns {
     pub(super) pixels: Rows<COLUMNS, KEPT>,
@@ -123,10 +123,10 @@ impl Columns {
     }
 }
 
-/// Reads a row of the picture, and what is around it.
+/// Reads a row of the image, and what is around it.
 fn read_row(input: &Input, tile: Region, y: usize, row: &mut Row<COLUMNS>) {
     let (width, height) = (input.image.width as usize, input.image.height as usize);
-    // The column of the picture's first pixels, which may be left of all.
+    // The column of the image's first pixels, which may be left of all.
     let left = MARGIN[0] as isize - tile.x as isize;
     let pixel_of = |column: isize| (column - left).clamp(0, width as isize) as usize;
     let y = (y + tile.y as usize).checked_sub(MARGIN[1]).filter(|&y| y < height);
@@ -168,7 +168,7 @@ fn set<L: Lanes>(row: &mut Row<COLUMNS>, x: usize, gathered: &Gathered) {
     mean_variance.sqrt().store(&mut row[DEVIATION][x..]);
 }
 
-/// Pixels of the picture, one in each lane; those outside of it are 0.
+/// Pixels of the image, one in each lane; those outside of it are 0.
 #[derive(Default)]
 struct Gathered {
     /// Normal and coverage.

@@ -6,7 +6,7 @@
 //! is covered. So each pixel is replaced by the prediction of a weighted linear regression on its neighbors (Moon et
 //! al., "Adaptive Rendering Based on Weighted Local Regression", TOG 2014; Bitterli et al., "Nonlinearly Weighted
 //! First-Order Regression for Denoising Monte Carlo Renderings", CGF 2016). Radiance is divided by the albedo before,
-//! and multiplied by it after, so that colors are not blurred. Features come from the camera rays of the picture's own
+//! and multiplied by it after, so that colors are not blurred. Features come from the camera rays of the image's own
 //! samples, and are recorded with them, so they have its silhouettes, including its lens blur and pixel filter.
 //!
 //! Edges that features do not have are those of caustics, highlights, and all that is seen in glass and mirrors. There,
@@ -34,7 +34,7 @@
 //!
 //! # The stated error
 //!
-//! The error above chooses, but does not judge. The error of the denoised picture, bias included, is measured by
+//! The error above chooses, but does not judge. The error of the denoised image, bias included, is measured by
 //! [`Probes`](crate::film::Probes): the means `a` and `b` of a probe's two streams are independent of each other and of
 //! the denoised pixel `d`, so the expectation of `(d - a)(d - b)` is the squared error of `d`.
 //! [`crate::noise`] has the bound.
@@ -62,7 +62,7 @@ use crate::render::{Options, Statistics};
 use rayon::prelude::*;
 use std::sync::Mutex;
 
-/// A denoised picture, or a region of it.
+/// A denoised image, or a region of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Denoised {
     /// Radiance.
@@ -72,7 +72,7 @@ pub struct Denoised {
     pub squared_error: Vec<f32>,
 }
 
-/// Denoises a picture, by the variance of its pixels and their features. All three must have the same size.
+/// Denoises an image, by the variance of its pixels and their features. All three must have the same size.
 ///
 /// The result has the same bytes for any number of threads. Pixels depend on others up to 17 pixels away.
 ///
@@ -84,7 +84,7 @@ pub fn denoise(image: &Image, statistics: &Statistics, layers: &Layers) -> Denoi
     denoised
 }
 
-/// Writes the same to a picture of this size until the flag of the options is set: tiles that are not begun by then stay as they
+/// Writes the same to an image of this size until the flag of the options is set: tiles that are not begun by then stay as they
 /// are. Returns false if there are any.
 fn denoise_until(
     image: &Image,
@@ -101,7 +101,7 @@ fn denoise_until(
         image,
         variance: &statistics.variance,
         features: &layers.pixels,
-        // The unit of relative errors, so that a picture of another brightness is treated alike.
+        // The unit of relative errors, so that an image of another brightness is treated alike.
         floor: mean_square(image),
     };
     let regions: Vec<Region> = tiles(width, height).collect();
@@ -127,7 +127,7 @@ fn denoise_until(
 }
 
 impl Denoised {
-    /// Returns a black picture without error.
+    /// Returns a black image without error.
     fn black(width: u32, height: u32) -> Self {
         let pixels = width as usize * height as usize;
         let image = Image { width, height, pixels: vec![[0.0; 3]; pixels] };
@@ -135,7 +135,7 @@ impl Denoised {
     }
 }
 
-/// Returns whether denoising raised the error of a picture of this film, by its steering probes and more than by chance.
+/// Returns whether denoising raised the error of an image of this film, by its steering probes and more than by chance.
 ///
 /// Few probes have nearly all of the difference if rare paths of much light make most of the error. It is compared with
 /// its standard error, so that they do not decide alone.
@@ -153,18 +153,18 @@ pub fn is_worse(film: &Film, image: &Image, denoised: &Image) -> bool {
     sum > squares.sqrt()
 }
 
-/// Estimates the relative error of a denoised picture of this film, by its judging probes; `mean` is the film's radiance.
+/// Estimates the relative error of a denoised image of this film, by its judging probes; `mean` is the film's radiance.
 fn error_of(film: &Film, mean: noise::Estimate, denoised: &Denoised) -> Noise {
     let Denoised { image, squared_error } = denoised;
     let measured = noise::squared_error_of(film, image, squared_error, Role::Judge);
-    // Light that neither samples nor probes have found is missing in the denoised picture, too.
+    // Light that neither samples nor probes have found is missing in the denoised image, too.
     let missing = noise::missing(film);
     let all = measured + missing;
     let expected = missing.value;
     Noise::new(noise::SquaredError { all, expected }, film.pixels(), mean)
 }
 
-/// Returns the mean square of the picture's radiance, over pixels and channels.
+/// Returns the mean square of the image's radiance, over pixels and channels.
 fn mean_square(image: &Image) -> f32 {
     let squares =
         noise::sum(&image.pixels, |pixel| pixel.iter().map(|&x| f64::from(x).powi(2)).sum());

@@ -12,7 +12,7 @@ pub(super) const COVERAGE: usize = 3;
 /// Index of the irradiance, which is mean radiance over albedo, by channel.
 pub(super) const IRRADIANCE: usize = FEATURES;
 
-/// Index of the weight: 0 outside of the picture, 1 without noise.
+/// Index of the weight: 0 outside of the image, 1 without noise.
 pub(super) const WEIGHT: usize = IRRADIANCE + 3;
 
 /// Index of the sphere at the pixel's center, which is compared by its bits only.
@@ -34,7 +34,7 @@ pub(super) const MEAN_VARIANCE: usize = MEAN + 1;
 /// Index of the standard deviation over channels.
 pub(super) const DEVIATION: usize = MEAN_VARIANCE + 1;
 
-/// Index of the number of pixels: 1 inside of the picture, and 0 outside.
+/// Index of the number of pixels: 1 inside of the image, and 0 outside.
 pub(super) const INSIDE: usize = DEVIATION + 1;
 
 /// Index of the sum of deviations around the pixel.

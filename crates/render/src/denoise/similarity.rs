@@ -137,7 +137,7 @@ impl Similar<'_> {
 }
 
 /// Computes the squared differences of a row's pixels from those of another row `dx` pixels later, beyond that of noise: in
-/// variances of the difference, less 1. It is 0 where one of the two is outside of the picture.
+/// variances of the difference, less 1. It is 0 where one of the two is outside of the image.
 fn differences(row: &Row<COLUMNS>, other: &Row<COLUMNS>, dx: isize, excess: &mut [f32; STRIDE]) {
     excess.fill(0.0);
     // The first pixel of the row that has a partner, and the first that is one.

@@ -1,4 +1,4 @@
-//! Renders whose denoised picture has an error target.
+//! Renders whose denoised image has an error target.
 
 use super::features::MissingFeatures;
 use super::{Denoised, denoise_until, error_of, is_worse};
@@ -12,10 +12,10 @@ use crate::world::World;
 use std::ops::RangeInclusive;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Error of the denoised picture at which a render stops if nothing else is said: 1 %.
+/// Error of the denoised image at which a render stops if nothing else is said: 1 %.
 pub const MAX_ERROR: f64 = 0.01;
 
-/// Cost of the samples of a picture of a thousand spheres that some ten seconds of a laptop pay for, in samples.
+/// Cost of the samples of an image of a thousand spheres that some ten seconds of a laptop pay for, in samples.
 const BUDGET: f64 = (1 << 25) as f64;
 
 /// Factor of the same for scenes whose surfaces are all diffuse: their paths take a third of the time of those of the
@@ -33,7 +33,7 @@ const UNIT_COST: (f64, i32) = (10.0, 3);
 const LIMITS: RangeInclusive<f64> = 16.0..=1024.0;
 
 /// Returns the maximum number of samples per pixel of a render that nothing but [`MAX_ERROR`] stops: by the size of the
-/// picture, the number of spheres and the kinds of materials alone, so that it is the same on all machines.
+/// image, the number of spheres and the kinds of materials alone, so that it is the same on all machines.
 pub fn max_samples(region: Region, spheres: usize, materials: &[NamedMaterial]) -> u32 {
     let depth = f64::from((spheres.max(1) as u64).ilog2() + 1);
     let cost = (depth / UNIT_COST.0).max(1.0).powi(UNIT_COST.1);
@@ -51,7 +51,7 @@ pub fn max_samples(region: Region, spheres: usize, materials: &[NamedMaterial]) 
 /// reflect or refract.
 const TRAJECTORY: [u32; 3] = [32, 64, 128];
 
-/// Returns the number of samples per pixel of each frame of a trajectory: by the size of the picture, the number of particles in the
+/// Returns the number of samples per pixel of each frame of a trajectory: by the size of the image, the number of particles in the
 /// first frame and the kinds of materials alone, so that it is the same in all frames.
 pub fn trajectory_samples(region: Region, spheres: usize, materials: &[NamedMaterial]) -> u32 {
     let samples = |row: &NamedMaterial| match row.material.surface() {
@@ -78,7 +78,7 @@ struct Progress {
     last: Option<(u64, Judged)>,
 }
 
-/// When the denoised picture is preferred.
+/// When the denoised image is preferred.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Choice {
     /// Always.
@@ -87,20 +87,20 @@ pub enum Choice {
     UnlessWorse,
 }
 
-/// A picture whose error is measured, denoised or not.
+/// An image whose error is measured, denoised or not.
 #[derive(Clone, Debug)]
 pub struct Judged {
-    /// The denoised picture, if it is preferred.
+    /// The denoised image, if it is preferred.
     pub denoised: Option<Denoised>,
-    /// Error of the picture as it was rendered.
+    /// Error of the image as it was rendered.
     pub before: Noise,
-    /// Error of the preferred picture.
+    /// Error of the preferred image.
     pub noise: Noise,
 }
 
 impl Denoiser {
     /// Estimates the bytes of denoising a region, beside those of its film: features and their sums, and the denoised
-    /// picture with its error.
+    /// image with its error.
     pub fn bytes(region: Region) -> u64 {
         let denoised = size_of::<[f32; 3]>() + size_of::<f32>();
         let pixels = u64::from(region.width) * u64::from(region.height);
@@ -122,8 +122,8 @@ impl Denoiser {
         Ok(Self { choice, progress: Mutex::new(Progress { missing, last: None }) })
     }
 
-    /// Denoises the picture of a film that has statistics, and judges it; with less than two samples per pixel the
-    /// variance is unknown, and the picture stays as it is. Returns `None` if not all pixels have samples, or if the
+    /// Denoises the image of a film that has statistics, and judges it; with less than two samples per pixel the
+    /// variance is unknown, and the image stays as it is. Returns `None` if not all pixels have samples, or if the
     /// flag of the options cancels it. `world` must be that of the beginning.
     ///
     /// # Panics
@@ -133,7 +133,7 @@ impl Denoiser {
         progress.last.take().map(|(_, judged)| judged)
     }
 
-    /// Returns the error of the picture that [`Denoiser::judge`] returns, which is kept for it.
+    /// Returns the error of the image that [`Denoiser::judge`] returns, which is kept for it.
     ///
     /// # Panics
     /// The same.

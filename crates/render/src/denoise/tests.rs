@@ -23,7 +23,7 @@ fn noise_at(pixel: u32) -> f32 {
     unit(mix(pixel.into()) as u32) - 0.5
 }
 
-/// A picture of two surfaces, on the left and on the right, with noise of this size.
+/// An image of two surfaces, on the left and on the right, with noise of this size.
 fn picture(noise: f32) -> (Image, Statistics, Layers) {
     let pixels: Vec<u32> = (0..WIDTH * HEIGHT).collect();
     let is_left = |pixel: u32| pixel % WIDTH < WIDTH / 2;
@@ -111,7 +111,7 @@ fn rare_bright_pixels_leave_no_stain() {
     assert!(denoised.pixels.iter().all(|pixel| pixel.iter().all(|&x| x < 1.0)));
 }
 
-/// The columns of a tile of the picture with noise of this size, as far as predictions of row `y` need them.
+/// The columns of a tile of the image with noise of this size, as far as predictions of row `y` need them.
 fn columns_of(noise: f32, y: usize) -> Columns {
     let (image, statistics, layers) = picture(noise);
     let input = tile::Input {
@@ -130,7 +130,7 @@ fn columns_of(noise: f32, y: usize) -> Columns {
 
 #[test]
 fn squares_are_means_of_their_pixels() {
-    // At a corner of the picture, on a surface, and across the edge of both.
+    // At a corner of the image, on a surface, and across the edge of both.
     for (x, y) in [(0, 0), (20, 30), (75, 30)] {
         let columns = columns_of(0.3, y);
         let (x, y) = (MARGIN[0] + x, MARGIN[1] + y);
@@ -152,7 +152,7 @@ fn squares_are_means_of_their_pixels() {
 
 #[test]
 fn rows_are_denoised_alike_after_rows_without_noise() {
-    // The picture with noise, a part without, and the picture again: all in a tile, or from the middle of that part on.
+    // The image with noise, a part without, and the image again: all in a tile, or from the middle of that part on.
     let (mut image, mut statistics, mut layers) = picture(0.3);
     let count = image.pixels.len();
     let repeat = |pixels: &mut Vec<[f32; 3]>, between: [f32; 3]| {

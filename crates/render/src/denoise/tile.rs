@@ -22,7 +22,7 @@ const CHOICE_EDGE: usize = 3;
 /// Distance of the pixels whose predictions a tile needs.
 const BORDER: usize = ERROR_EDGE / 2 + CHOICE_EDGE / 2;
 
-/// Fraction of the picture's mean square that is added to the square of radiance in relative errors.
+/// Fraction of the image's mean square that is added to the square of radiance in relative errors.
 const FLOOR: f32 = 0.3;
 
 /// Squared difference from the prediction that noise explains, in variances of the pixel.
@@ -43,7 +43,7 @@ const KEPT_NOISE: [f32; CHOICES] = [
     1.0 / (SQUARE * SQUARE * pixels(SQUARES_RADIUS)) as f32,
 ];
 
-/// The picture that is denoised.
+/// The image that is denoised.
 pub(super) struct Input<'a> {
     pub(super) image: &'a Image,
     /// Variance of each pixel's mean.
@@ -75,7 +75,7 @@ pub(super) struct Workspace {
     shares: BoxSums<CHOICES, CHOICE_EDGE>,
 }
 
-/// Returns the tiles of a picture.
+/// Returns the tiles of an image.
 pub(super) fn tiles(width: u32, height: u32) -> impl Iterator<Item = Region> {
     let steps = |count: u32, size: u32| {
         (0..count).step_by(size as usize).map(move |from| (from, size.min(count - from)))
@@ -164,7 +164,7 @@ fn predict_lanes<L: Lanes>(
         scale = radiance.mul_add(radiance, scale + noise);
         own = own + noise;
     }
-    // Black pictures have no error.
+    // Black images have no error.
     scale = Lanes::max(scale, L::splat(f32::MIN_POSITIVE));
     scale.store(&mut row[SCALE][x..]);
     // Rare bright paths would keep themselves: their variance is not that of well-distributed samples.
@@ -219,7 +219,7 @@ fn choose_lanes<L: Lanes>(
     chosen.store(&mut chosen_sum[x..]);
 }
 
-/// Sources that a row of the denoised picture is blended from.
+/// Sources that a row of the denoised image is blended from.
 struct Blended<'a> {
     columns: &'a Row<COLUMNS>,
     predictions: &'a Row<PREDICTED>,

@@ -1,7 +1,7 @@
 //! Layers (AOVs): auxiliary channels of each pixel for denoisers and compositors.
 //!
 //! They are computed by a separate pass of camera rays, so that all integrators have them, and a render
-//! without layers costs nothing. The rays are the picture's: the same samples of the same filter
+//! without layers costs nothing. The rays are the image's: the same samples of the same filter
 //! through the same lens, so that edges and blur are at the same positions.
 
 mod progressive;
@@ -71,7 +71,7 @@ pub struct Features {
     pub id: u32,
 }
 
-/// The layers of a picture, or of a region of it.
+/// The layers of an image, or of a region of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layers {
     /// Width in pixels.
@@ -198,10 +198,10 @@ impl Layers {
     }
 }
 
-/// Computes the layers of a picture, with as many samples as the picture but at most [`SAMPLES`].
+/// Computes the layers of an image, with as many samples as the image but at most [`SAMPLES`].
 ///
 /// Only the region, the tracer and the flag of `options` are used: once it is set, no pixels are returned. Like the
-/// picture's, pixels have the same bytes
+/// image's, pixels have the same bytes
 /// for any number of threads and any tracer, in a region and in the whole. If `wanted` has only
 /// [`Layer::Id`] and statistics, one ray per pixel is traced, and only the ids are valid.
 ///

@@ -1,4 +1,4 @@
-//! Layers that are refined together with their picture.
+//! Layers that are refined together with their image.
 
 use super::sums::Sums;
 use super::{Features, Layers, SAMPLES};

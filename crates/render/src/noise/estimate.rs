@@ -1,4 +1,4 @@
-//! Estimates of the error of a picture, from probes.
+//! Estimates of the error of an image, from probes.
 
 use crate::film::{Film, Pilot, Reading, Role, Tile};
 use crate::image::Image;
@@ -15,7 +15,7 @@ const DEVIATIONS: f64 = 3.0;
 /// Weight of the third moment over the second in the bound: (2 x^2 + 1) / 6 for the same `x`.
 const SKEW: f64 = (2.0 * DEVIATIONS * DEVIATIONS + 1.0) / 6.0;
 
-/// The squared error of a picture: its sum over pixels, averaged over channels.
+/// The squared error of an image: its sum over pixels, averaged over channels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SquaredError {
     /// By probes, and by what they have not found.
@@ -36,7 +36,7 @@ pub struct Estimate {
     pub third: f64,
 }
 
-/// The relative error of a picture: the root of its mean squared error, over pixels and channels,
+/// The relative error of an image: the root of its mean squared error, over pixels and channels,
 /// divided by its mean radiance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
@@ -51,7 +51,7 @@ pub struct Noise {
 
 impl Noise {
     /// Computes the error from the sum of the squared errors of `pixels` pixels, and their mean
-    /// radiance. A picture without error has an error of 0 even if it is black.
+    /// radiance. An image without error has an error of 0 even if it is black.
     pub fn new(squared: SquaredError, pixels: u64, mean: Estimate) -> Self {
         let SquaredError { all: squared, expected } = squared;
         if squared.value == 0.0 && squared.variance == 0.0 {
@@ -76,7 +76,7 @@ impl Noise {
 
 impl Estimate {
     /// Returns the contribution of a reading to the sum of squared errors. The error of the actual
-    /// picture deviates from its expectation too: its pixels are `weight` times as many as the probes.
+    /// image deviates from its expectation too: its pixels are `weight` times as many as the probes.
     fn of_squared(reading: &Reading) -> Self {
         let value = reading.weight * reading.squared;
         let deviation = 1.0 + 1.0 / reading.weight.max(1.0);
@@ -172,7 +172,7 @@ pub(crate) fn sum<T: Sync>(pixels: &[T], value: impl Fn(&T) -> f64 + Sync) -> f6
 }
 
 /// Estimates the mean radiance over pixels and channels from pilot and probes, independently of the
-/// picture's own samples.
+/// image's own samples.
 pub fn mean_radiance(film: &Film) -> Estimate {
     let pixels = film.pixels() as f64;
     let scale = |sum: Estimate| Estimate {

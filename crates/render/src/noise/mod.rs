@@ -4,21 +4,21 @@
 //!
 //! The error of a pixel's mean cannot be estimated from its own samples: these are not independent, and
 //! their spread, like the difference of two halves of their sequence, overestimates it several times.
-//! But pixels have independent random numbers, so the squared error of a picture is the sum of the
+//! But pixels have independent random numbers, so the squared error of an image is the sum of the
 //! variances of its pixels' means, and such a sum can be estimated from some of them. [`Probes`] are
-//! pixels drawn at random, one per block of neighbors, and rendered twice in addition to the picture,
-//! each time with as many samples as the picture's own: half of the squared difference of two such
+//! pixels drawn at random, one per block of neighbors, and rendered twice in addition to the image,
+//! each time with as many samples as the image's own: half of the squared difference of two such
 //! means is an unbiased estimate of the variance of one, including the gain of the sequence.
 //!
 //! # Absence of bias
 //!
 //! The number of samples of a pixel is decided by probes, their rays, and a pilot of all pixels, whose
-//! random numbers are independent of the picture's. So, given all counts, each pixel is the mean of the
+//! random numbers are independent of the image's. So, given all counts, each pixel is the mean of the
 //! first points of its own scrambled sequence, every one of them uniform: its expectation is that of
-//! one sample. The picture's samples do not influence their number. (With a time limit, the clock does,
+//! one sample. The image's samples do not influence their number. (With a time limit, the clock does,
 //! and samples take time.)
 //!
-//! Likewise the estimate of the picture's squared error is unbiased after any number of rounds: of two
+//! Likewise the estimate of the image's squared error is unbiased after any number of rounds: of two
 //! sets of probes one steers, and only the other judges. What remains is that the render stops when
 //! that estimate is low; the bound that is compared with the target allows for it.
 //!

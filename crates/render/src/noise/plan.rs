@@ -10,7 +10,7 @@ use std::f64::consts::LN_2;
 /// Minimum and maximum exponent of the decrease of variance with samples.
 const EXPONENTS: (f64, f64) = (0.5, 2.0);
 
-/// Weight in pixels of the whole picture's mean noise in a tile's estimate, beside its own 4096: no
+/// Weight in pixels of the whole image's mean noise in a tile's estimate, beside its own 4096: no
 /// tile is considered noise-free only because its probes found nothing.
 const PRIOR_PIXELS: f64 = 128.0;
 
@@ -79,7 +79,7 @@ pub fn steering_variance(tile: &Tile) -> f64 {
 /// Returns the tiles of the next round in descending order of benefit; none if all have the maximum of
 /// samples.
 ///
-/// `noise` is the estimated error of the picture.
+/// `noise` is the estimated error of the image.
 pub fn next_round(
     film: &Film,
     stop: &StopCondition,
@@ -92,7 +92,7 @@ pub fn next_round(
         .filter(|&tile| is_open(&film.tiles[tile as usize], stop))
         .collect();
     if least < stop.first_samples() {
-        // Uniform; if time is short, the remaining tiles are scattered over the picture.
+        // Uniform; if time is short, the remaining tiles are scattered over the image.
         open.retain(|&tile| film.tiles[tile as usize].samples == least);
         open.sort_by_key(|&tile| crate::sampling::mix(u64::from(tile)));
         return open;
@@ -121,7 +121,7 @@ fn is_open(tile: &Tile, stop: &StopCondition) -> bool {
     tile.probes.streams() > 0 && tile.samples < stop.spp
 }
 
-/// Returns the rays that a tile has taken, by those of its probes: independent of the picture's own.
+/// Returns the rays that a tile has taken, by those of its probes: independent of the image's own.
 pub fn work(tile: &Tile) -> f64 {
     f64::from(tile.samples) * per_sample(tile)
 }

@@ -26,7 +26,7 @@ const SMALL_STEP: u32 = 16;
 /// The stop condition of a render: an error, a time or a number of samples, whichever is met first.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StopCondition {
-    /// Error of the picture, if that stops the render.
+    /// Error of the image, if that stops the render.
     pub until_error: Option<f64>,
     /// Time of the whole render, if that stops it.
     pub time: Option<Duration>,
@@ -85,7 +85,7 @@ impl StopCondition {
         next.min(self.spp)
     }
 
-    /// Returns whether the error of a picture meets the target, with at least `samples` samples per pixel after
+    /// Returns whether the error of an image meets the target, with at least `samples` samples per pixel after
     /// `round` rounds.
     pub fn is_met(&self, noise: Noise, samples: u32, round: u32) -> bool {
         let early = samples < self.first_samples();

@@ -1,4 +1,4 @@
-//! Color bars, which show the numbers that the colors of a picture stand for.
+//! Color bars, which show the numbers that the colors of an image stand for.
 
 use super::annotations::Block;
 use crate::color::{Rgb, Scale, Tick, ticks};

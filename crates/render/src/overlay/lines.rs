@@ -70,7 +70,7 @@ impl Overlay<'_> {
         }
     }
 
-    /// Returns the distance from the camera at a fraction of the line in the picture, in the scene's
+    /// Returns the distance from the camera at a fraction of the line in the image, in the scene's
     /// unit, as in the depth layer.
     fn distance(&self, line: &Projected, along: f64) -> f64 {
         let [a, b] = line.seen;
@@ -78,7 +78,7 @@ impl Overlay<'_> {
         if self.world.camera.is_orthographic() {
             return (a.z + (b.z - a.z) * along) / scale;
         }
-        // 1/z is linear in the picture.
+        // 1/z is linear in the image.
         let part = along * a.z / ((1.0 - along) * b.z + along * a.z);
         (a + (b - a) * part).length() / scale
     }
@@ -133,7 +133,7 @@ mod tests {
         (World::build(&scene).unwrap(), scene)
     }
 
-    /// A picture of a white line on black, in a region.
+    /// An image of a white line on black, in a region.
     fn drawn(projection: Projection, line: Line, region: Region) -> Image {
         let (world, scene) = world(projection);
         let options = Options { region: Some(region), ..Options::default() };

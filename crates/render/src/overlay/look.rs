@@ -7,7 +7,7 @@ use crate::scene::Look;
 /// Opacity of the depth cue at the farthest sphere.
 const MAX_FADE: f32 = 0.75;
 
-/// Height of a picture in which lines are 1.5 pixels wide.
+/// Height of an image in which lines are 1.5 pixels wide.
 const ROWS: f64 = 600.0;
 
 impl Overlay<'_> {

@@ -1,4 +1,4 @@
-//! Mattes: pictures without their background, with the coverage of spheres and their shadows.
+//! Mattes: images without their background, with the coverage of spheres and their shadows.
 
 use super::{GroundLayers, Overlay};
 use crate::image::{Image, tone};
@@ -53,7 +53,7 @@ impl Overlay<'_> {
     }
 }
 
-/// Draws over a picture and its matte: `draw` must be able to draw over any picture.
+/// Draws over an image and its matte: `draw` must be able to draw over any image.
 pub fn draw_over(image: &mut Image, matte: Option<&mut Matte>, draw: impl Fn(&mut Image)) {
     draw(image);
     if let Some(matte) = matte {
@@ -61,7 +61,7 @@ pub fn draw_over(image: &mut Image, matte: Option<&mut Matte>, draw: impl Fn(&mu
     }
 }
 
-/// Increases the alpha of a picture of this size by what `draw` draws over any picture.
+/// Increases the alpha of an image of this size by what `draw` draws over any image.
 ///
 /// The coverage is computed from drawings over black and over white.
 pub fn draw_alpha(alpha: &mut [f32], (width, height): (u32, u32), draw: impl Fn(&mut Image)) {

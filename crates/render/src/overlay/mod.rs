@@ -1,4 +1,4 @@
-//! Overlays on a finished picture: lines in the scene, contours of spheres, depth cue, and removal of
+//! Overlays on a finished image: lines in the scene, contours of spheres, depth cue, and removal of
 //! the background.
 //!
 //! Lines have no thickness in the scene, so no rays are traced for them. They are projected through the
@@ -30,12 +30,12 @@ use crate::layers::Layers;
 use crate::world::World;
 use rayon::prelude::*;
 
-/// A rendered picture, or a region of one, with the data for overlays.
+/// A rendered image, or a region of one, with the data for overlays.
 #[derive(Clone, Copy, Debug)]
 pub struct Overlay<'a> {
     /// The world that was rendered.
     pub world: &'a World,
-    /// The rendered region of the picture.
+    /// The rendered region of the image.
     pub region: Region,
     /// Layers of its pixels: at least [`Layer::Depth`](crate::layers::Layer::Depth).
     pub layers: &'a Layers,
@@ -53,7 +53,7 @@ impl Overlay<'_> {
     }
 }
 
-/// Blends `color` over a picture, with opacities of 0..=1 per pixel.
+/// Blends `color` over an image, with opacities of 0..=1 per pixel.
 fn blend(image: &mut Image, opacities: &[f32], color: [f32; 3]) {
     let pixels = image.pixels.par_iter_mut().zip(opacities).with_min_len(PIXELS);
     pixels.for_each(|(pixel, &opacity)| {

@@ -1,4 +1,4 @@
-//! The shadow on the ground, separated from the picture.
+//! The shadow on the ground, separated from the image.
 
 use crate::image::Image;
 use crate::render::{self, End, Options, RenderError, ResumableRender};
@@ -81,7 +81,7 @@ impl GroundRender {
     }
 }
 
-/// Removes settings and options that concern only the picture itself.
+/// Removes settings and options that concern only the image itself.
 fn plain<'a>(settings: &Settings, options: &Options<'a>) -> (Settings, Options<'a>) {
     let Options { tracer, region, cancel, .. } = *options;
     let options = Options { tracer, region, cancel, ..Options::default() };
@@ -108,7 +108,7 @@ pub fn ground(
     Ok(done.then(|| render.ground()))
 }
 
-/// Returns the fraction of one picture's light that is missing in the other.
+/// Returns the fraction of one image's light that is missing in the other.
 fn blocked(lit: &Image, bare: &Image) -> Vec<f32> {
     let light = |pixel: &[f32; 3]| pixel.iter().sum::<f32>();
     let fraction = |(lit, bare): (&[f32; 3], &[f32; 3])| {

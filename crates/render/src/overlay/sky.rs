@@ -56,7 +56,7 @@ mod tests {
         scene
     }
 
-    /// The picture before and after drawing.
+    /// The image before and after drawing.
     fn drawn(draw: impl Fn(&Overlay, &mut Image)) -> [Image; 2] {
         let scene = scene();
         let world = World::build(&scene).unwrap();
@@ -86,7 +86,7 @@ mod tests {
         assert_eq!(depths(&World::build(&scene()).unwrap()).map(f64::round), [4.0, 14.0]);
     }
 
-    /// Returns a white picture of 6 x 5 pixels after drawing; its left half is at depth 10 and its
+    /// Returns a white image of 6 x 5 pixels after drawing; its left half is at depth 10 and its
     /// right half is `other`, in a scene of depths from 0 to 100.
     fn halves(other: Features, draw: impl Fn(&Overlay, &mut Image)) -> Image {
         let up = [0.0, 0.0, 1.0];

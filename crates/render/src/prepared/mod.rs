@@ -1,8 +1,8 @@
 //! Prepared scenes: files with a scene and its tree, so that renders need not read particles, transform
 //! them, or build the tree.
 //!
-//! Many renders of one scene, such as the parts of a picture in many processes, would otherwise repeat
-//! this work. Pictures do not depend on whether their scene was prepared.
+//! Many renders of one scene, such as the parts of an image in many processes, would otherwise repeat
+//! this work. Images do not depend on whether their scene was prepared.
 //!
 //! # Format
 //!
@@ -52,11 +52,11 @@ pub struct PreparedScene {
     pub scene: Scene,
     /// Identity of the scene with its spheres.
     pub identity: Identity,
-    /// Names and values for the metadata of pictures, in addition to settings.
+    /// Names and values for the metadata of images, in addition to settings.
     pub metadata: Vec<(String, String)>,
     /// The builder of the tree.
     pub builder: Builder,
-    /// Picture size for which the camera was placed, in pixels.
+    /// Image size for which the camera was placed, in pixels.
     size: [u32; 2],
     parts: Parts,
 }
@@ -70,7 +70,7 @@ impl PreparedScene {
     /// Builds the world of the prepared scene.
     ///
     /// # Errors
-    /// The aspect of the picture has changed, and the camera is fitted or parallel; or a setting is out
+    /// The aspect of the image has changed, and the camera is fitted or parallel; or a setting is out
     /// of range.
     pub fn build(mut self) -> Result<(Scene, World), PrepareError> {
         if !self.parts.place(&self.scene, self.size)? {
@@ -85,7 +85,7 @@ impl PreparedScene {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PrepareError {
-    /// The camera was placed for another picture.
+    /// The camera was placed for another image.
     #[error(
         "was prepared for {} x {} pixels, and its camera depends on the aspect ratio: use --size with the \
          same ratio, or prepare it again", .0[0], .0[1]

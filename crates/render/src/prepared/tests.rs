@@ -130,7 +130,7 @@ fn worlds_are_the_ones_that_were_written() {
     }
 }
 
-/// The world of a prepared scene with another picture size.
+/// The world of a prepared scene with another image size.
 fn resized(scene: &Scene, [width, height]: [u32; 2]) -> Result<(Scene, World), PrepareError> {
     let saved = save(scene, Builder::default());
     let mut stored = read(&saved.path).expect("it was written");

@@ -20,7 +20,7 @@ const ROWS: usize = 1 << 10;
 
 /// Writes a scene with its world to a file for [`super::read()`]. The spheres of `scene` are not used;
 /// `identity` is that of the scene with them, and `metadata` are names and values for the metadata of
-/// pictures.
+/// images.
 ///
 /// # Errors
 /// The scene has data that scene files do not support, or the file cannot be written: the old file is

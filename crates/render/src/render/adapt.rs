@@ -14,15 +14,15 @@ use crate::noise::{self, Noise, Slope, StopCondition};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Number of pilot samples in a picture, below which the pilot takes more than one per pixel; and
+/// Number of pilot samples in an image, below which the pilot takes more than one per pixel; and
 /// number of pixels from which on it samples only one pixel of four.
 const PILOT: (u64, u64) = (4096, 65_536);
 
 /// Interval of looking at the clock: fraction of the time limit, and minimum in seconds.
 const CLOCK_CHECKS: (f64, f64) = (0.02, 0.1);
 
-/// Ratio of the picture's error to the target from which on the judge is not asked, since that takes time: denoising
-/// divides the error by 1.2 to 2.5 in most pictures.
+/// Ratio of the image's error to the target from which on the judge is not asked, since that takes time: denoising
+/// divides the error by 1.2 to 2.5 in most images.
 const HOPELESS: f64 = 2.5;
 
 /// Renders until the target is met.
@@ -139,7 +139,7 @@ fn rays(tile: &Tile, to: u32) -> f64 {
     (f64::from(to) / f64::from(tile.samples.max(1)) - 1.0) * noise::work(tile)
 }
 
-/// Estimates the rays of a picture that meets the target from those so far.
+/// Estimates the rays of an image that meets the target from those so far.
 fn expected_work(
     stop: &StopCondition,
     noise: Option<Noise>,

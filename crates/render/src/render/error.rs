@@ -12,13 +12,13 @@ pub enum RenderError {
     /// A setting is out of range.
     #[error(transparent)]
     Setting(#[from] InvalidSetting),
-    /// The region is not in the picture.
+    /// The region is not in the image.
     #[error(transparent)]
     Region(#[from] RegionError),
     /// A part with samples or tiles that the render does not have.
     #[error("not a part of the render: {0}")]
     Part(ImagePart),
-    /// The picture size of the settings differs from that of the world's camera.
+    /// The image size of the settings differs from that of the world's camera.
     #[error(
         "the settings are for a picture of {} x {}, but the world's camera makes one of {} x {}; \
          build the world with these settings, or call World::set_camera",
@@ -27,12 +27,12 @@ pub enum RenderError {
     Size {
         /// Width and height of the settings.
         settings: [u32; 2],
-        /// Width and height of the camera's picture.
+        /// Width and height of the camera's image.
         camera: [u32; 2],
     },
 }
 
-/// Checks the settings and the region of a render. Returns the region, which is the whole picture if
+/// Checks the settings and the region of a render. Returns the region, which is the whole image if
 /// the options name none.
 pub(crate) fn check(
     world: &World,

@@ -60,7 +60,7 @@ impl RenderHeader {
     }
 
     /// Checks the header; the error says what is invalid. A render that resumes from a valid header may
-    /// give a wrong picture, but does not fail.
+    /// give a wrong image, but does not fail.
     pub(crate) fn check(&self) -> Result<(), &'static str> {
         require(self.settings.check().is_ok(), "invalid settings")?;
         let inside = self.region.check_in(self.settings.width, self.settings.height);

@@ -2,7 +2,7 @@
 //!
 //! A plain render takes the same number of samples for every pixel. With an error target or a time
 //! limit, it goes in rounds over the tiles that need more samples: see [`crate::noise`]. Both can be
-//! stopped and resumed without changing the picture: see [`ResumableRender`].
+//! stopped and resumed without changing the image: see [`ResumableRender`].
 
 mod adapt;
 mod device;
@@ -54,8 +54,8 @@ use std::time::Duration;
 pub struct Options<'a> {
     /// Traversal of rays; the default is the fastest.
     pub tracer: Tracer,
-    /// Renders only this part of the picture; `None` for all of it. Its pixels are the same as in the
-    /// whole picture, unless a target decides on the number of samples, which considers only the
+    /// Renders only this part of the image; `None` for all of it. Its pixels are the same as in the
+    /// whole image, unless a target decides on the number of samples, which considers only the
     /// region.
     pub region: Option<Region>,
     /// Called with the progress after each tile, on any thread.
@@ -67,8 +67,8 @@ pub struct Options<'a> {
     /// True if the features of the first samples are recorded for a [`Denoiser`](crate::denoise::Denoiser), which traces
     /// them otherwise.
     pub features: bool,
-    /// Estimates the error that is compared with the target, in place of that of the picture itself:
-    /// that of the denoised picture, say. It is asked where the picture's own error is at most 2.5 times the target.
+    /// Estimates the error that is compared with the target, in place of that of the image itself:
+    /// that of the denoised image, say. It is asked where the image's own error is at most 2.5 times the target.
     /// `None` from it stands for an estimate that was cancelled.
     ///
     /// It must be a function of the film and the scene alone.
@@ -136,7 +136,7 @@ pub struct Samples {
     pub least: u32,
     /// Maximum over pixels.
     pub most: u32,
-    /// Number of rounds: together with the settings, it identifies the picture.
+    /// Number of rounds: together with the settings, it identifies the image.
     pub rounds: u32,
 }
 
@@ -167,15 +167,15 @@ impl Statistics {
 
 /// Renders `world` with the threads of the current rayon pool.
 ///
-/// The picture depends only on the world and the settings: it has the same bytes for any number of
+/// The image depends only on the world and the settings: it has the same bytes for any number of
 /// threads and any tracer; a time limit decides only the number of samples.
 ///
 /// A task of a parallel iterator that waits for a render may begin the iterator's next one on the same stack, which can overflow:
 /// to render many worlds at once, call this from threads of [`std::thread`].
 ///
 /// # Errors
-/// Settings out of range, or for another picture size than that of the world's camera; a region that is
-/// not in the picture.
+/// Settings out of range, or for another image size than that of the world's camera; a region that is
+/// not in the image.
 pub fn render(
     world: &World,
     settings: &Settings,

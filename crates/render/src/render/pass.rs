@@ -176,7 +176,7 @@ pub(super) fn probe_paths(tile: &Tile, samples: u32) -> usize {
     tile.probes.streams() * samples.min(PASS) as usize
 }
 
-/// Takes pilot samples of tiles of the same view, which are not part of the picture: one pixel of each `block`,
+/// Takes pilot samples of tiles of the same view, which are not part of the image: one pixel of each `block`,
 /// and `samples` of it, at most [`PASS`].
 pub(super) fn pilot_pass(
     job: &Job,

@@ -1,4 +1,4 @@
-//! Previews: pictures without noise, fast enough for a moving camera.
+//! Previews: images without noise, fast enough for a moving camera.
 
 use super::pass::{uniform_radiance, view};
 use super::{Options, RenderError, check};
@@ -17,14 +17,14 @@ use std::sync::atomic::Ordering;
 /// Tiles whose paths fill a batch.
 const TILES: usize = BATCH_PATHS / (TILE * TILE) as usize;
 
-/// Renders a picture without noise: one ray per pixel, through its middle, direct light from the middles of lights, and
+/// Renders an image without noise: one ray per pixel, through its middle, direct light from the middles of lights, and
 /// unhidden light of the environment. `shadows` is true if lights cast them, which takes a tenth to a third more time.
 ///
 /// Mirrors and glass show one direction each; light from surface to surface is missing. Of the integrator, ambient
 /// occlusion has its colors alone; the sampler, the filter and the number of samples have no effect. Of the
 /// options, the region, the tracer and the flag that cancels are used: `None` if it was set.
 ///
-/// The picture has the same bytes for any number of threads and any tracer.
+/// The image has the same bytes for any number of threads and any tracer.
 ///
 /// # Errors
 /// Those of [`render()`](super::render()).

@@ -192,7 +192,7 @@ impl ResumableRender {
         measured.then(|| self.state.noise(self.settings.until_error.is_some())).flatten()
     }
 
-    /// Returns the same without statistics and error, which take a while for large pictures; in the memory of `pixels`, as
+    /// Returns the same without statistics and error, which take a while for large images; in the memory of `pixels`, as
     /// [`Film::resolve_in`].
     pub fn unmeasured(&self, pixels: Vec<[f32; 3]>) -> Render {
         let Totals { counters, times, tasks, elapsed } = self.totals;
@@ -249,7 +249,7 @@ impl ResumableRender {
         &self.stop_conditions
     }
 
-    /// Returns the region of the picture, in pixels.
+    /// Returns the region of the image, in pixels.
     pub fn region(&self) -> Region {
         self.state.film.region
     }

@@ -29,7 +29,7 @@ pub(super) fn parts(left: usize, threads: usize) -> u32 {
 /// The tasks of a render, in the order in which they are started.
 ///
 /// A pass is [`PASS`] samples of a tile's pixels. Passes cover all tiles before the next round, so that
-/// the picture progresses uniformly. They end at the same samples as in a render without interruptions.
+/// the image progresses uniformly. They end at the same samples as in a render without interruptions.
 #[derive(Debug)]
 pub(super) struct Schedule {
     /// Samples that each tile has already.

@@ -7,7 +7,7 @@ use crate::noise::{self, Estimate, Noise, Slope, StopCondition};
 use serde::{Deserialize, Serialize};
 
 /// The state that decides all further work: a render that resumes from a saved state makes the same
-/// picture as one without interruptions.
+/// image as one without interruptions.
 #[derive(Clone, Debug)]
 pub(super) struct State {
     /// Sums, probes and counts.
@@ -61,7 +61,7 @@ impl State {
         }
     }
 
-    /// Estimates the error of the picture, once all pixels have samples. For a decision, `by_probes`,
+    /// Estimates the error of the image, once all pixels have samples. For a decision, `by_probes`,
     /// the mean radiance is that of pilot and probes alone.
     pub(super) fn noise(&self, by_probes: bool) -> Option<Noise> {
         let begun = self.film.tiles.iter().all(|tile| tile.samples > 0);
@@ -110,7 +110,7 @@ impl State {
         !self.plan.is_empty()
     }
 
-    /// Returns the rays that the picture has taken.
+    /// Returns the rays that the image has taken.
     pub(super) fn work(&self) -> f64 {
         self.film.tiles.iter().map(noise::work).sum()
     }

@@ -10,7 +10,7 @@ use std::time::Duration;
 pub struct Status {
     /// Settings of the whole render.
     pub settings: Settings,
-    /// The rendered region of the picture.
+    /// The rendered region of the image.
     pub region: Region,
     /// The samples and tiles of this file's part.
     pub part: ImagePart,

@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 ///
 /// A task is a pass over a tile or a part of one, and threads take tasks from one counter: several at
 /// once if their samples fill a batch of paths together. No thread waits for the end of a pass over the
-/// whole picture, nor for another that has samples of the same tile, except while these are added up,
+/// whole image, nor for another that has samples of the same tile, except while these are added up,
 /// in any order.
 pub(super) fn run(job: &Job, part: Range<u32>, state: &mut State, watch: &Watch) -> End {
     let spp = part.len() as u32;

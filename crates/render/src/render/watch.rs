@@ -57,7 +57,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Returns the estimate that is compared with the target, if it is not that of the picture itself.
+    /// Returns the estimate that is compared with the target, if it is not that of the image itself.
     pub(super) fn judge(&self) -> Option<&'a Judge<'a>> {
         self.options.judge
     }

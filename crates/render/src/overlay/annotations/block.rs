@@ -7,7 +7,7 @@ use crate::graphics::{Align, CAP_HEIGHT, Drawing, Text, marked_width, text_width
 use crate::scene::{Anchor, ColorLegend, Label, ScaleBar};
 use glam::DVec2;
 
-/// Maximum length of a scale bar of automatic length, as a fraction of the picture's width.
+/// Maximum length of a scale bar of automatic length, as a fraction of the image's width.
 const BAR_SHARE: f64 = 0.25;
 
 /// Distance of the baselines of two lines, in ems.
@@ -85,7 +85,7 @@ pub(super) fn legend(legend: &ColorLegend, size: f64, ink: Rgb) -> Block {
     Block { drawing, size: DVec2::new(width, baseline - LINE * size) }
 }
 
-/// Returns the block of a scale bar in a picture of this width.
+/// Returns the block of a scale bar in an image of this width.
 pub(super) fn scale_bar(
     bar: &ScaleBar,
     view: &Viewpoint,

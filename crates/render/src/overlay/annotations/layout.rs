@@ -1,4 +1,4 @@
-//! Layout of annotations: blocks are stacked at the corners and edges of the picture.
+//! Layout of annotations: blocks are stacked at the corners and edges of the image.
 
 use super::Viewpoint;
 use super::block::{self, Block};
@@ -15,14 +15,14 @@ const SHRINK: [f64; 7] = [1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4];
 /// Minimum size of letters in pixels.
 const MIN_LETTER: f64 = 5.0;
 
-/// Lengths of color bars in a corner as fractions of the picture's height.
+/// Lengths of color bars in a corner as fractions of the image's height.
 const CORNER_BAR: f64 = 0.35;
 
 /// Lengths of color bars at an edge as fractions of its length, of which the first is used for which all
 /// blocks have room.
 const EDGE_BARS: [f64; 4] = [0.6, 0.5, 0.4, 0.3];
 
-/// The rest of the picture has at least this fraction of its smaller side in each direction, or else no
+/// The rest of the image has at least this fraction of its smaller side in each direction, or else no
 /// insets are left for annotations.
 const MIN_REST: f64 = 0.5;
 
@@ -34,19 +34,19 @@ struct Placed {
     corner: DVec2,
 }
 
-/// Blocks with their places in a picture.
+/// Blocks with their places in an image.
 pub(super) struct Layout {
     blocks: Vec<Placed>,
-    /// Distance from the picture's edge and between blocks.
+    /// Distance from the image's edge and between blocks.
     gap: f64,
-    /// Width and height of the picture.
+    /// Width and height of the image.
     picture: DVec2,
-    /// True if blocks overlap neither one another nor the picture's edge.
+    /// True if blocks overlap neither one another nor the image's edge.
     pub(super) fits: bool,
 }
 
 impl Layout {
-    /// Places annotations in a picture of this size, with letters of `letter` pixels or less.
+    /// Places annotations in an image of this size, with letters of `letter` pixels or less.
     pub(super) fn new(
         annotations: &Annotations,
         (width, height): (u32, u32),
@@ -150,7 +150,7 @@ impl Layout {
         let mut insets = Insets::default();
         for Placed { anchor, block, .. } in &self.blocks {
             let row = in_row(*anchor);
-            // The distance from the picture's edge to the far side of the block or its stack.
+            // The distance from the image's edge to the far side of the block or its stack.
             let stack = self.blocks.iter().filter(|placed| placed.anchor == *anchor);
             let high: f64 = stack.map(|placed| placed.block.size.y + self.gap).sum();
             let across = (block.size.x + 1.5 * self.gap) / self.picture.x;

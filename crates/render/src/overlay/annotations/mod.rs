@@ -1,4 +1,4 @@
-//! Annotations of a picture: their layout at its edges, and their drawing.
+//! Annotations of an image: their layout at its edges, and their drawing.
 //!
 //! ```text
 //! annotations -> blocks, one for each               block, tripod, color_bar
@@ -7,7 +7,7 @@
 //!             -> one Drawing                        graphics
 //! ```
 //!
-//! All sizes are in proportion to the letters, whose size is relative to the picture's smaller side, or a length on
+//! All sizes are in proportion to the letters, whose size is relative to the image's smaller side, or a length on
 //! paper.
 
 mod block;
@@ -39,18 +39,18 @@ const LIGHT_INK: Rgb = Rgb::splat(0.8);
 /// The properties of the camera that annotations show.
 #[derive(Clone, Copy, Debug)]
 struct Viewpoint {
-    /// Unit axes of the picture: to the right, upward, and into the scene.
+    /// Unit axes of the image: to the right, upward, and into the scene.
     axes: [DVec3; 3],
     /// Edge of a pixel at the depth of the target, in the scene's unit; `None` if it is not known yet.
     pixel: Option<f64>,
-    /// True if the camera turns from picture to picture, and axes need room for all directions.
+    /// True if the camera turns from image to image, and axes need room for all directions.
     turns: bool,
 }
 
 /// Returns the insets that a fitted camera needs so that annotations cover no sphere: none without
-/// annotations, for a camera that is not fitted, or if annotations take too much of the picture.
+/// annotations, for a camera that is not fitted, or if annotations take too much of the image.
 ///
-/// `turns` is true if the camera turns from picture to picture.
+/// `turns` is true if the camera turns from image to image.
 pub fn insets(scene: &Scene, turns: bool) -> Insets {
     let fitted = matches!(scene.camera.pose, Pose::Fit { .. });
     let axes = framing::picture_axes(&scene.camera);
@@ -64,17 +64,17 @@ pub fn insets(scene: &Scene, turns: bool) -> Insets {
     layout.insets().unwrap_or_default()
 }
 
-/// Annotations of a picture, and whether all of them have room.
+/// Annotations of an image, and whether all of them have room.
 #[derive(Clone, Debug)]
 pub struct AnnotationDrawing {
-    /// The drawing, in pixels of the whole picture.
+    /// The drawing, in pixels of the whole image.
     pub drawing: Drawing,
-    /// False if annotations overlap one another or the picture's edge although their letters are as
+    /// False if annotations overlap one another or the image's edge although their letters are as
     /// small as they may be.
     pub fits: bool,
 }
 
-/// Draws the annotations of a picture of a world, which may have a `resolution` in pixels per inch. Those that cover a sphere get a panel behind them.
+/// Draws the annotations of an image of a world, which may have a `resolution` in pixels per inch. Those that cover a sphere get a panel behind them.
 pub fn draw(
     annotations: &Annotations,
     world: &World,
@@ -103,7 +103,7 @@ pub fn draw(
 }
 
 /// Returns a color for letters that contrasts with the background: with its color, or else with the sky
-/// in the corners of the picture.
+/// in the corners of the image.
 fn ink(world: &World, look: &Look) -> Rgb {
     if look.background != Background::Sky {
         return look.ink();
@@ -128,7 +128,7 @@ fn paper(look: &Look, ink: Rgb) -> Rgb {
     }
 }
 
-/// Returns whether a ray through a rectangle of the picture hits a sphere.
+/// Returns whether a ray through a rectangle of the image hits a sphere.
 fn covers_sphere(world: &World, low: DVec2, high: DVec2) -> bool {
     let rows = (0..world.spheres.len()).into_par_iter().with_min_len(1 << 12);
     rows.into_par_iter().any(|row| world.camera.coverage(world.spheres.exact(row), low, high) > 0.0)

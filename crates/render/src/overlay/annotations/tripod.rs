@@ -1,4 +1,4 @@
-//! Axis tripods: three arrows that show directions in the picture.
+//! Axis tripods: three arrows that show directions in the image.
 
 use super::Viewpoint;
 use super::block::Block;
@@ -7,7 +7,7 @@ use crate::graphics::{Align, CAP_HEIGHT, Drawing, Text, X_HEIGHT, text_width};
 use crate::scene::AxisTripod;
 use glam::{DVec2, DVec3};
 
-/// Length of an arrow in the plane of the picture, in ems.
+/// Length of an arrow in the plane of the image, in ems.
 const LENGTH: f64 = 2.8;
 
 /// Distance from the tip of an arrow to the middle of its letter, in ems.
@@ -17,10 +17,10 @@ const LETTER: f64 = 0.65;
 const SHAFT: f64 = 0.16;
 const HEAD: (f64, f64) = (0.52, 0.75);
 
-/// Length in the picture, relative to the whole, below which an axis is a disc.
+/// Length in the image, relative to the whole, below which an axis is a disc.
 const SHORT: f64 = 0.2;
 
-/// Cosine of the angle in the picture below which one axis hides the letter of another.
+/// Cosine of the angle in the image below which one axis hides the letter of another.
 const PARALLEL: f64 = 0.95;
 
 /// Radius of that disc, in ems.
@@ -30,7 +30,7 @@ const DISC: f64 = 0.24;
 #[allow(clippy::unreadable_literal, reason = "colors read as in the sRGB hex notation")]
 const COLORS: [[u32; 3]; 2] = [[0xC62828, 0x2E7D32, 0x1A55C4], [0xFF6E6E, 0x66D06E, 0x7AA7FF]];
 
-/// An axis in the picture.
+/// An axis in the image.
 struct Arrow<'a> {
     /// Direction to the right and downward; shorter if it points out of the plane.
     direction: DVec2,

@@ -46,7 +46,7 @@ pub(super) fn run<'a>(
 ) {
     let Some(device) = job.device.filter(|_| !watch.cancelled()) else { return };
     let queue = TileQueue::new(steps.filter(|(tile, _)| tile.view == View::Anything));
-    // Threads would leave nothing of a small picture to the device.
+    // Threads would leave nothing of a small image to the device.
     let first: Vec<Option<Taken>> = (0..IN_FLIGHT).map(|_| queue.take(FEWEST)).collect();
     if first.iter().all(Option::is_none) {
         return;

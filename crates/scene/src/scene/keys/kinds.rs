@@ -56,26 +56,29 @@ impl Words {
     }
 }
 
-impl Kind<f64> for Limits {
-    fn read(&self, value: &Value) -> Result<f64, FileError> {
-        value.number(*self)
-    }
+/// A number of a key, which is read in its own precision, so that it survives writing and reading.
+pub(in crate::scene) trait Number: Copy + Debug + Into<f64> {
+    fn read(value: &Value, limits: Limits) -> Result<Self, FileError>;
+}
 
-    fn contains(&self, value: &f64) -> bool {
-        self.contain(*value)
-    }
-
-    fn words(&self) -> Words {
-        Words::new(self.describe(), "float")
+impl Number for f64 {
+    fn read(value: &Value, limits: Limits) -> Result<Self, FileError> {
+        value.number(limits)
     }
 }
 
-impl Kind<f32> for Limits {
-    fn read(&self, value: &Value) -> Result<f32, FileError> {
-        value.single(*self)
+impl Number for f32 {
+    fn read(value: &Value, limits: Limits) -> Result<Self, FileError> {
+        value.single(limits)
+    }
+}
+
+impl<T: Number> Kind<T> for Limits {
+    fn read(&self, value: &Value) -> Result<T, FileError> {
+        T::read(value, *self)
     }
 
-    fn contains(&self, value: &f32) -> bool {
+    fn contains(&self, value: &T) -> bool {
         self.contain((*value).into())
     }
 
