@@ -1,15 +1,9 @@
-//! The other tests of this folder in one program, a quarter of their size: `tools/gpu-check` takes it to other machines.
+//! Tests that need a device, in one program: they share one device, and the kernels that it has compiled.
+//! `tools/gpu-check` takes the program to other machines.
 
-#![allow(clippy::duplicate_mod, reason = "each of them includes `common`")]
-
-// By their paths, for `common` is beside them.
-#[path = "devices.rs"]
+mod common;
 mod devices;
-#[path = "hits.rs"]
 mod hits;
-#[path = "loss.rs"]
 mod loss;
-#[path = "paths/main.rs"]
 mod paths;
-#[path = "stages.rs"]
 mod stages;

@@ -3,8 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "tests fail so")]
 #![allow(clippy::print_stdout, reason = "the table of docs/gpu.md, with --nocapture")]
 
-mod common;
-
+use crate::common::device;
 use spherule_core::internals::bvh::builders::{Builder, build};
 use spherule_core::internals::bvh::{Bvh, Tracer, Tree, UNKNOWN};
 use spherule_core::internals::random::Random;
@@ -15,13 +14,7 @@ use spherule_gpu::{Answered, Device, DeviceError, DeviceSpheres, DeviceTree};
 use spherule_measure::stress::rays::Ray;
 use spherule_measure::stress::{REGIMES, sample};
 use spherule_measure::workload::{Class, SphereScene, Views};
-use std::sync::{Arc, OnceLock};
-
-/// The device of all tests.
-fn device() -> &'static Arc<Device> {
-    static DEVICE: OnceLock<Arc<Device>> = OnceLock::new();
-    DEVICE.get_or_init(common::device)
-}
+use std::sync::Arc;
 
 /// Rays in columns.
 struct Columns([Vec<f32>; 6]);

@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "tests fail so")]
 
-mod common;
-
-use common::device;
+use crate::common::own_device;
 use spherule_core::internals::bvh::builders::{Builder, build};
 use spherule_core::internals::bvh::{Tracer, Tree};
 use spherule_core::internals::ray::{Hits, MISS, Rays};
@@ -26,7 +24,7 @@ fn wait_for(holds: impl Fn() -> bool) -> bool {
 #[test]
 #[ignore = "needs a GPU, or Vulkan in software"]
 fn a_device_that_is_taken_away_in_the_middle_loses_no_hit() {
-    let device = device();
+    let device = own_device();
     let scene = SphereScene::PAPER2500;
     let mut spheres = scene.spheres().unwrap();
     let bvh = build(&mut spheres, Builder::default());
@@ -69,7 +67,7 @@ fn a_device_that_is_taken_away_in_the_middle_loses_no_hit() {
 #[test]
 #[ignore = "needs a GPU, or Vulkan in software"]
 fn columns_of_rays_are_answered_without_the_device() {
-    let device = device();
+    let device = own_device();
     let tree = SphereTree::from_columns(&[0.0, 3.0], &[0.0; 2], &[0.0; 2], &[1.0, 0.5]).unwrap();
     let on_device = DeviceSpheres::new(&device, &tree).unwrap();
     device.destroy();

@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "tests fail so")]
 
-mod common;
-
-use common::{device, scene_folder};
+use crate::common::{device, scene_folder};
 use spherule_core::internals::bvh::UNKNOWN;
 use spherule_core::internals::ray::{MISS, Rays};
 use spherule_gpu::{DeviceTree, FirstStages, Integrator as DeviceIntegrator};
@@ -47,7 +45,7 @@ fn compare(
         let job = Job::new(&world, settings, settings.spp, Tracer::default(), Elisions::ALL);
         let pixels: Vec<(u32, u32)> = (0..PIXELS).map(|i| (i % 20 * 2, i / 20 * 3)).collect();
         let tree = Tree { bvh: &world.bvh, spheres: &world.spheres };
-        let tree = Arc::new(DeviceTree::new(&device, tree).unwrap());
+        let tree = Arc::new(DeviceTree::new(device, tree).unwrap());
         let paths = DeviceIntegrator::new(&tree, &world).unwrap();
         let job_numbers = device_job(&job).unwrap();
         let found = paths.first_stages(&job_numbers, &pixels, &SAMPLES).unwrap();

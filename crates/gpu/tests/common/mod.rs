@@ -1,13 +1,17 @@
 //! The device of tests, and their files.
 
-#![allow(dead_code, reason = "not every test reads or writes files")]
-
 use spherule_gpu::Device;
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
+
+/// Returns the device of all tests but those that destroy theirs: each kernel is compiled once. Fails if there is none.
+pub(crate) fn device() -> &'static Arc<Device> {
+    static DEVICE: OnceLock<Arc<Device>> = OnceLock::new();
+    DEVICE.get_or_init(own_device)
+}
 
 /// Opens a device; fails if there is none.
-pub(crate) fn device() -> Arc<Device> {
+pub(crate) fn own_device() -> Arc<Device> {
     Arc::new(Device::best(true).unwrap_or_else(|error| panic!("{error}")))
 }
 

@@ -1,8 +1,6 @@
 //! Tests of texts as programs and people write them: missing values, names of columns, line ends, numbers.
 
-mod common;
-
-use common::file;
+use crate::common::file;
 use spherule_particles::{Columns, Element, Format, ParticleFrame, ReadOptions, read_frame};
 
 fn all_columns() -> ReadOptions {

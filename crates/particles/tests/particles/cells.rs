@@ -1,12 +1,10 @@
 //! Tests of the cells of layers: those with an edge without length.
 
+use crate::common::file;
 use spherule_particles::{Cell, ParticleFrame, ReadOptions, read_frame};
 
 fn read(content: &str) -> Result<ParticleFrame, String> {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("input");
-    std::fs::write(&path, content).expect("a file");
-    read_frame(&path, &ReadOptions::default()).map_err(|error| error.to_string())
+    read_frame(&file(content).path, &ReadOptions::default()).map_err(|error| error.to_string())
 }
 
 const PDB: &str = "\

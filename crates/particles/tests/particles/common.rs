@@ -9,7 +9,7 @@ pub(crate) struct File {
 }
 
 /// Writes a file.
-pub(crate) fn file(content: &str) -> File {
+pub(crate) fn file(content: impl AsRef<[u8]>) -> File {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("input");
     std::fs::write(&path, content).expect("a file");

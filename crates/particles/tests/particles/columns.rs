@@ -1,8 +1,6 @@
 //! Tests of columns that follow from bonds, of whole molecules and of smoothed trajectories.
 
-mod common;
-
-use common::file;
+use crate::common::file;
 use spherule_particles::{Columns, Frames, ParticleFrame, ReadOptions, Trails, read_frame};
 
 fn wanted(names: &[&str]) -> ReadOptions {
@@ -82,7 +80,7 @@ fn dump(frames: usize) -> String {
 
 #[test]
 fn positions_are_averaged_over_frames() {
-    let moving = file(&dump(6));
+    let moving = file(dump(6));
     let smooth = |half: u32, frame: &str| {
         let frame = frame.parse().expect("a frame");
         ReadOptions { smooth: half, frame, ..ReadOptions::default() }
@@ -151,7 +149,7 @@ fn frames_are_superposed_on_the_first() {
 
 #[test]
 fn trails_are_the_positions_before_as_nearest_images() {
-    let moving = file(&dump(6));
+    let moving = file(dump(6));
     let of = |trail: u32, smooth: u32, frame: &str| {
         let frame = frame.parse().expect("a frame");
         let options = ReadOptions { trail, smooth, frame, ..ReadOptions::default() };

@@ -1,25 +1,12 @@
 //! Tests of arrays in containers: frames in NPZ, structures of arrays, half-precision numbers.
 
+use crate::common::{File, file};
 use spherule_particles::{
     Columns, FrameChoice, Frames, ParticleFrame, ReadOptions, count_frames, read_frame,
 };
 use std::io::{Cursor, Write};
-use std::path::PathBuf;
 use zip::CompressionMethod;
 use zip::write::SimpleFileOptions;
-
-/// A file in a folder that is removed with it.
-struct Binary {
-    _folder: tempfile::TempDir,
-    path: PathBuf,
-}
-
-fn binary(content: &[u8]) -> Binary {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("input");
-    std::fs::write(&path, content).expect("a file");
-    Binary { _folder: folder, path }
-}
 
 /// An array of this type and shape.
 fn array(kind: &str, shape: &str, bytes: &[u8]) -> Vec<u8> {
@@ -36,14 +23,14 @@ fn counted(count: u32) -> Vec<u8> {
     doubles((0..count).map(f64::from))
 }
 
-fn archive(arrays: &[(&str, Vec<u8>)], method: CompressionMethod) -> Binary {
+fn archive(arrays: &[(&str, Vec<u8>)], method: CompressionMethod) -> File {
     let mut writer = zip::ZipWriter::new(Cursor::new(Vec::new()));
     for (name, bytes) in arrays {
         let options = SimpleFileOptions::default().compression_method(method);
         writer.start_file(format!("{name}.npy"), options).expect("a file");
         writer.write_all(bytes).expect("bytes");
     }
-    binary(writer.finish().expect("an archive").get_ref())
+    file(writer.finish().expect("an archive").get_ref())
 }
 
 fn all_columns() -> ReadOptions {
@@ -103,7 +90,7 @@ fn structures_have_arrays_and_half_precision_numbers() {
         ]
         .concat()
     };
-    let file = binary(&array(kind, "(2,)", &[row(0x3C00, 5.0), row(0x3555, 6.0)].concat()));
+    let file = file(array(kind, "(2,)", &[row(0x3C00, 5.0), row(0x3555, 6.0)].concat()));
     let frame = read_frame(&file.path, &all_columns()).expect("a frame");
     assert_eq!(frame.x, [1.0, 1365.0 / 4096.0]);
     assert_eq!((frame.y[1], frame.z[1], &frame.radius[..]), (2.0, -3.0, &[0.5, 0.5][..]));

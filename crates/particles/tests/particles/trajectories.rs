@@ -1,8 +1,6 @@
 //! Tests of trajectories and their topologies, on files that `tools/readers/trajectories.py` wrote. What
 //! other programs read from them is compared in `tests/library/readers.rs`.
 
-#![allow(clippy::disallowed_methods, reason = "tests compare with tolerances")]
-
 use spherule_particles::{
     BondSource, Columns, Element, FileError, Format, FrameChoice, Frames, LengthUnit,
     ParticleFrame, ReadOptions, count_frames, read_frame,

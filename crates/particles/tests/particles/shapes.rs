@@ -1,8 +1,6 @@
 //! Tests of ellipsoids in files of several programs: the same two, one of them turned, in each format.
 
-mod common;
-
-use common::file;
+use crate::common::file;
 use glam::{DQuat, DVec3};
 use spherule_particles::{AlignBy, FrameChoice, ParticleFrame, ReadOptions, read_frame};
 
@@ -49,7 +47,11 @@ fn data_files_have_a_section_of_ellipsoids() {
     let section = "Ellipsoids\n\n3 2 4 8 1 0 0 1\n5 2 4 8 1 0 0 0\n";
     check(&frame(&format!("{DATA}{section}")), 0);
     for (row, place) in [("5 2 4 8 1 0 0", "19"), ("5 2 4 x 1 0 0 0", "19:7")] {
-        let file = file(&format!("{DATA}Ellipsoids\n\n3 2 4 8 1 0 0 1\n{row}\n"));
+        let file = file(format!("{DATA}Ellipsoids
+
+3 2 4 8 1 0 0 1
+{row}
+"));
         let error = read_frame(&file.path, &ReadOptions::default()).expect_err(row).to_string();
         assert!(error.contains(&format!("input:{place}")), "{row}: {error}");
     }
@@ -72,7 +74,7 @@ fn orientations_turn_with_frames_that_are_aligned() {
     let first = dump("1 0 0 0 2 4 8\n2 1 0 0 2 4 8\n3 0 2 0 2 4 8\n");
     // A right angle about z later.
     let later = dump("1 5 5 0 2 4 8\n2 5 6 0 2 4 8\n3 3 5 0 2 4 8\n");
-    let file = file(&format!("{first}{later}"));
+    let file = file(format!("{first}{later}"));
     let options = ReadOptions {
         align: Some(AlignBy::all()),
         frame: FrameChoice::Index(1),

@@ -1,8 +1,6 @@
 //! Tests of elements by the evidence that files have: names, types and masses.
 
-mod common;
-
-use common::file;
+use crate::common::file;
 use spherule_particles::{Element, ParticleFrame, ReadOptions, read_frame};
 
 fn frame(content: &str) -> ParticleFrame {

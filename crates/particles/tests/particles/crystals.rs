@@ -1,15 +1,13 @@
 //! Tests of the bonds that covalent radii find in crystals, with published cells and sites.
 
+use crate::common::file;
 use spherule_particles::{BondSource, ParticleFrame, ReadOptions, read_frame};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
 fn read(content: &str) -> ParticleFrame {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("input");
-    std::fs::write(&path, content).expect("a file");
     let options = ReadOptions { bonds: BondSource::Auto, ..ReadOptions::default() };
-    read_frame(&path, &options).unwrap_or_else(|error| panic!("{error}"))
+    read_frame(&file(content).path, &options).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// A CIF of these edges, angles, and sites with their labels.

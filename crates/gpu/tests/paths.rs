@@ -3,10 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "tests fail so")]
 #![allow(clippy::print_stdout, reason = "shares of unknown paths, with --nocapture")]
 
-#[path = "../common/mod.rs"]
-mod common;
-
-use common::{device, scene_folder, scratch_folder};
+use crate::common::{device, own_device, scene_folder, scratch_folder};
 use glam::DVec3;
 use spherule_gpu::{Answered, Device, DeviceError, DeviceTree, Integrator as DeviceIntegrator};
 use spherule_measure::random_scene;
@@ -96,7 +93,7 @@ fn ambient_occlusion_of_all_scenes_is_the_processors() {
         let far = scene.spheres.len().is_multiple_of(2);
         let distance = if far { f64::INFINITY } else { 0.7 };
         scene.settings.integrator = Integrator::Ao { distance };
-        all += compare(&path.display().to_string(), &scene, &device);
+        all += compare(&path.display().to_string(), &scene, device);
     }
     assert!(all.paths > 50_000, "{all:?}");
     assert!(all.unknown_paths * 100 < all.paths, "{all:?}");
@@ -123,7 +120,7 @@ fn paths_among_diffuse_surfaces_are_the_processors() {
     for path in files() {
         let mut scene = load(&path);
         diffuse(&mut scene);
-        all += compare(&path.display().to_string(), &scene, &device);
+        all += compare(&path.display().to_string(), &scene, device);
     }
     assert!(all.paths > 50_000, "{all:?}");
     assert!(all.unknown_paths * 100 < all.paths, "{all:?}");
@@ -182,7 +179,7 @@ fn compare_material(name: &str, material: &Material, suns: &[f64], device: &Arc<
 fn each_material_under_sky_and_sun_is_the_processors() {
     let device = device();
     for (name, material) in opaque_materials() {
-        compare_material(name, &material, &[0.0, 3.0, 30.0], &device);
+        compare_material(name, &material, &[0.0, 3.0, 30.0], device);
     }
 }
 
@@ -204,7 +201,7 @@ fn light_that_coats_mirror_is_the_processors() {
             } else {
                 scene.environment.illuminates = false;
             }
-            compare(&format!("{name} {background}"), &scene, &device);
+            compare(&format!("{name} {background}"), &scene, device);
         }
     }
 }
@@ -220,7 +217,7 @@ fn mixed_materials_in_all_scenes_are_the_processors() {
         diffuse(&mut scene);
         of_materials(&mut scene, &materials);
         add_sun(&mut scene, 12.0);
-        compare(&path.display().to_string(), &scene, &device);
+        compare(&path.display().to_string(), &scene, device);
     }
 }
 
@@ -281,7 +278,7 @@ fn lights_of_every_kind_are_the_processors() {
                 }
                 scene.settings.light_choice = choice;
                 let case = format!("{name}, {choice:?}, lights {lights}, emitters {emitters}");
-                let found = compare(&case, &scene, &device);
+                let found = compare(&case, &scene, device);
                 assert!(found.unknown_paths * 20 < found.paths, "{case} {found:?}");
             }
         }
@@ -306,7 +303,7 @@ fn one_emitter_and_hundreds_are_the_processors() {
         for material in scene.spheres.material.iter_mut().step_by(every) {
             *material = glowing;
         }
-        let found = compare(name, &scene, &device);
+        let found = compare(name, &scene, device);
         assert!(found.unknown_paths * 20 < found.paths, "{name} {found:?}");
     }
 }
@@ -323,7 +320,7 @@ fn emitters_that_smooth_surfaces_mirror_are_the_processors() {
         if suns {
             add_lights(&mut scene);
         }
-        let found = compare(&format!("mirrored emitters, suns {suns}"), &scene, &device);
+        let found = compare(&format!("mirrored emitters, suns {suns}"), &scene, device);
         assert!(found.unknown_paths * 20 < found.paths, "{found:?}");
     }
 }
@@ -350,7 +347,7 @@ fn glass_that_stands_alone_is_the_processors() {
                     scene.look.background = Background::Color(Rgb::new(0.1, 0.5, 0.3));
                 }
                 let case = format!("{name} glass, background {background}, lights {lights}");
-                let found = compare(&case, &scene, &device);
+                let found = compare(&case, &scene, device);
                 assert!(found.unknown_paths * 20 < found.paths, "{case} {found:?}");
             }
         }
@@ -382,7 +379,7 @@ fn caustics_are_the_processors() {
                 add_sun(&mut scene, 3.0);
             }
             let case = format!("caustics of {name}, suns {suns}, emitters {emitters}");
-            let found = compare(&case, &scene, &device);
+            let found = compare(&case, &scene, device);
             assert!(found.unknown_paths * 20 < found.paths, "{case} {found:?}");
         }
     }
@@ -418,7 +415,7 @@ fn whitted_ray_tracing_is_the_processors() {
             let world = World::build(&scene).unwrap();
             // Hundreds of emitters have too many shadow samples.
             if not_followed(&world, &scene.settings).is_none() {
-                compare(&case, &scene, &device);
+                compare(&case, &scene, device);
                 followed += 1;
             }
         }
@@ -430,7 +427,7 @@ fn whitted_ray_tracing_is_the_processors() {
     scene.environment.map =
         EnvironmentMap::Picture { image, up: DVec3::Z, rotation: 0.7, scale: 1.3 };
     scene.settings.integrator = Integrator::Whitted { shadow_samples: 5 };
-    let found = compare("whitted, picture of a sky", &scene, &device);
+    let found = compare("whitted, picture of a sky", &scene, device);
     assert!(found.unknown_paths * 20 < found.paths, "{found:?}");
 }
 
@@ -475,7 +472,7 @@ fn pictures_of_skies_are_the_processors() {
                 for integrator in [Integrator::Path, Integrator::Ao { distance: 2.0 }] {
                     scene.settings.integrator = integrator;
                     let case = format!("sky {size:?}, {choice:?}, others {others} {integrator:?}");
-                    let found = compare(&case, &scene, &device);
+                    let found = compare(&case, &scene, device);
                     assert!(found.unknown_paths * 20 < found.paths, "{case} {found:?}");
                 }
             }
@@ -510,7 +507,7 @@ fn nested_and_overlapping_glass_is_the_processors() {
             scene.spheres.push(center + DVec3::Y * radius, 0.7 * radius, row, Rgb::ONE);
             scene.spheres.push(center + DVec3::X * radius, radius, row, Rgb::ONE);
         }
-        let found = compare(&format!("nested glass {tint}"), &scene, &device);
+        let found = compare(&format!("nested glass {tint}"), &scene, device);
         assert!(found.unknown_paths * 20 < found.paths, "{found:?}");
         // And around the camera, two of them.
         let eye = eye_of(&scene);
@@ -519,7 +516,7 @@ fn nested_and_overlapping_glass_is_the_processors() {
         for integrator in [Integrator::Path, Integrator::Whitted { shadow_samples: 2 }] {
             scene.settings.integrator = integrator;
             let case = format!("glass {tint} around the camera, {integrator:?}");
-            let found = compare(&case, &scene, &device);
+            let found = compare(&case, &scene, device);
             assert!(found.unknown_paths * 20 < found.paths, "{case} {found:?}");
         }
     }
@@ -539,7 +536,7 @@ fn paths_of_many_bounces_are_the_processors() {
     scene.settings.roulette = Roulette::None;
     scene.settings.depth = Some(45);
     scene.settings.spp = 2;
-    let found = compare("many bounces", &scene, &device);
+    let found = compare("many bounces", &scene, device);
     assert!(found.rays > 40 * found.paths && found.unknown_paths * 5 < found.paths, "{found:?}");
 }
 
@@ -554,7 +551,7 @@ fn scenes_that_devices_follow_are_the_processors() {
         let why = not_followed(&world, &scene.settings);
         println!("{}: {why:?}", path.display());
         if why.is_none() {
-            compare(&path.display().to_string(), &scene, &device);
+            compare(&path.display().to_string(), &scene, device);
             followed.push(path.file_stem().unwrap().display().to_string());
         }
     }
@@ -577,7 +574,7 @@ fn looks_of_particles_are_the_processors() {
         preset.replace_materials(&mut scene);
         preset.set(&mut scene);
         preset.light(&mut scene, DVec3::Y);
-        let found = compare(preset.name(), &scene, &device);
+        let found = compare(preset.name(), &scene, device);
         assert!(found.paths > 1000 && found.unknown_paths * 50 < found.paths, "{found:?}");
     }
 }
@@ -608,7 +605,7 @@ fn settings_of_paths_are_heeded() {
         let mut scene = named("paper-field-20.toml");
         diffuse(&mut scene);
         change(&mut scene);
-        compare(name, &scene, &device);
+        compare(name, &scene, device);
     }
 }
 
@@ -634,7 +631,7 @@ fn renders_that_are_resumed_or_meet_an_error_are_the_processors() {
     let mut measured = scene.clone();
     (measured.settings.until_error, measured.settings.spp) = (None, 40);
     let expected = render(&world, &measured.settings, &statistics).unwrap();
-    let on_device = attach(&mut world, &device);
+    let on_device = attach(&mut world, device);
     // It is stopped after its first batch, and goes on with other samples there.
     let stop = AtomicBool::new(false);
     let show = |_: Progress| stop.store(true, Ordering::Relaxed);
@@ -670,7 +667,7 @@ fn parts_of_both_merge_to_the_whole() {
         render
     };
     let first = run(&world, part(0..13));
-    let on_device = attach(&mut world, &device);
+    let on_device = attach(&mut world, device);
     let second = run(&world, part(13..40));
     // The first of three passes at least, without the tiles that see no sphere.
     let paths = on_device.tally().paths;
@@ -683,7 +680,7 @@ fn parts_of_both_merge_to_the_whole() {
 #[test]
 #[ignore = "needs a GPU, or Vulkan in software"]
 fn paths_are_finished_without_the_device_that_is_taken_away() {
-    let device = device();
+    let device = own_device();
     let scene = divided_scene();
     let mut world = World::build(&scene).unwrap();
     let own = image(&world, &scene).image;
@@ -745,7 +742,7 @@ fn random_scenes_are_the_processors() {
         }
         let world = World::build(&scene).unwrap();
         if not_followed(&world, &scene.settings).is_none() {
-            all += compare(&file.display().to_string(), &scene, &device);
+            all += compare(&file.display().to_string(), &scene, device);
         }
         std::fs::remove_file(&file).unwrap();
     }
@@ -765,6 +762,6 @@ fn coincident_spheres_are_known() {
         let (center, radius) = (scene.spheres.center(row), scene.spheres.radius[row]);
         scene.spheres.push(center, radius, other, Rgb::ONE);
     }
-    let found = compare("coincident spheres", &scene, &device);
+    let found = compare("coincident spheres", &scene, device);
     assert!(found.unknown_paths * 100 < found.paths, "{found:?}");
 }

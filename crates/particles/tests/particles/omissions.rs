@@ -1,19 +1,7 @@
 //! Tests that readers say what they leave out, and refuse options that have no effect.
 
+use crate::common::file;
 use spherule_particles::{BondSource, FrameChoice, Radii, ReadOptions, count_frames, read_frame};
-use std::path::PathBuf;
-
-struct File {
-    _folder: tempfile::TempDir,
-    path: PathBuf,
-}
-
-fn file(content: &str) -> File {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("input");
-    std::fs::write(&path, content).expect("a file");
-    File { _folder: folder, path }
-}
 
 /// Returns the number of particles and all warnings.
 fn warnings(content: &str) -> (usize, String) {
