@@ -196,7 +196,7 @@ mod tests {
 
         #[test]
         fn bonds_are_those_of_all_pairs_and_images(
-            points in prop::collection::vec([-4.0..9.0, -4.0..9.0, -4.0..9.0], 1..60),
+            points in prop::collection::vec([-4.0..9.0, -4.0..9.0, -4.0..9.0], 1..25),
             [x, y, z] in [1.5..7.0_f64, 1.5..7.0, 1.5..7.0],
             [xy, xz, yz] in [-1.5..1.5_f64, -1.5..1.5, -1.5..1.5],
             periodic in any::<[bool; 3]>(),
@@ -214,21 +214,27 @@ mod tests {
                 element.covalent_radius().expect("a radius")
             };
             let steps = |axis: usize| if periodic[axis] { -16..=16 } else { 0..=0_i8 };
+            let mut images = Vec::new();
+            for i in steps(0) {
+                for j in steps(1) {
+                    for k in steps(2) {
+                        let image = cell.matrix() * DVec3::new(i.into(), j.into(), k.into());
+                        images.push(([i, j, k], image));
+                    }
+                }
+            }
+            // Those that no bond reaches from one corner of the points to another.
+            images.retain(|(_, image)| image.length() < 13.0 * 3.0_f64.sqrt() + 5.0);
             let mut expected = Vec::new();
             for first in 0..points.len() {
                 for second in first..points.len() {
                     let most = radius(first) + radius(second) + 0.45;
-                    for i in steps(0) {
-                        for j in steps(1) {
-                            for k in steps(2) {
-                                let shift = [i, j, k];
-                                let image = cell.matrix() * DVec3::from(shift.map(f64::from));
-                                let away = frame.position(second) + image - frame.position(first);
-                                let own = first == second && shift >= [0; 3];
-                                if away.length() > 0.4 && away.length() <= most && !own {
-                                    expected.push((first as u32, second as u32, shift));
-                                }
-                            }
+                    let between = frame.position(second) - frame.position(first);
+                    for &(shift, image) in &images {
+                        let away = between + image;
+                        let own = first == second && shift >= [0; 3];
+                        if away.length() > 0.4 && away.length() <= most && !own {
+                            expected.push((first as u32, second as u32, shift));
                         }
                     }
                 }
