@@ -7,6 +7,9 @@ use std::fmt::Write as _;
 /// Number of spheres of each source, which dominate the memory.
 const COUNT: usize = 500_000;
 
+/// Number of rows of files of text, which still dominate.
+const ROWS: usize = 200_000;
+
 /// Arguments of an image that is small enough for spheres to dominate.
 const TINY: [&str; 7] = ["--size", "32x24", "--spp", "1", "--quiet", "-o", "x.png"];
 
@@ -33,9 +36,9 @@ fn place(row: usize) -> [f64; 3] {
 }
 
 /// Returns the rows of a file, between header and trailer.
-fn rows(head: &str, row: impl Fn(usize, [f64; 3]) -> String) -> String {
+fn rows(head: &str, count: usize, row: impl Fn(usize, [f64; 3]) -> String) -> String {
     let mut text = head.to_owned();
-    for index in 0..COUNT {
+    for index in 0..count {
         writeln!(text, "{}", row(index, place(index))).expect("a text takes everything");
     }
     text
@@ -83,40 +86,44 @@ fn estimates_are_right_for_every_format_of_text() {
     let element = |row: usize| ["C", "O", "N"][row % 3];
     folder.write(
         "a.xyz",
-        &rows(&format!("{COUNT}\n\n"), |row, [x, y, z]| format!("{} {x} {y} {z}", element(row))),
+        &rows(&format!("{ROWS}\n\n"), ROWS, |row, [x, y, z]| {
+            format!("{} {x} {y} {z}", element(row))
+        }),
     );
     folder.write(
         "a.csv",
-        &rows("x,y,z,radius,red,green,blue\n", |row, [x, y, z]| {
+        &rows("x,y,z,radius,red,green,blue\n", ROWS, |row, [x, y, z]| {
             format!("{x},{y},{z},0.3,{},{},{}", row as f64 / 1e6, 0.1, 0.9)
         }),
     );
-    folder.write("a.txt", &rows("", |_, [x, y, z]| format!("{x} {y} {z} 0.3")));
+    folder.write("a.txt", &rows("", ROWS, |_, [x, y, z]| format!("{x} {y} {z} 0.3")));
     folder.write("a.dump", &rows(
         &format!(
-            "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{COUNT}\nITEM: BOX BOUNDS pp pp pp\n0 60\n0 60\n\
+            "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{ROWS}\nITEM: BOX BOUNDS pp pp pp\n0 60\n0 60\n\
              0 60\nITEM: ATOMS id type x y z\n"
         ),
+        ROWS,
         |row, [x, y, z]| format!("{} {} {x} {y} {z}", row + 1, 1 + row % 2),
     ));
     folder.write(
         "a.data",
         &rows(
             &format!(
-                "data\n\n{COUNT} atoms\n2 atom types\n0 60 xlo xhi\n0 60 ylo yhi\n0 60 zlo zhi\n\n\
+                "data\n\n{ROWS} atoms\n2 atom types\n0 60 xlo xhi\n0 60 ylo yhi\n0 60 zlo zhi\n\n\
              Atoms # atomic\n\n"
             ),
+            ROWS,
             |row, [x, y, z]| format!("{} {} {x} {y} {z}", row + 1, 1 + row % 2),
         ),
     );
     folder.write(
         "a.gro",
-        &(rows(&format!("water\n{COUNT}\n"), |row, [x, y, z]| {
+        &(rows(&format!("water\n{ROWS}\n"), ROWS, |row, [x, y, z]| {
             let number = (row + 1) % 100_000;
             format!("{number:5}SOL  {:>5}{number:5}{x:8.3}{y:8.3}{z:8.3}", ["OW", "HW1"][row % 2])
         }) + "60 60 60\n"),
     );
-    folder.write("a.pdb", &rows("", |row, [x, y, z]| {
+    folder.write("a.pdb", &rows("", ROWS, |row, [x, y, z]| {
         let (number, name) = ((row + 1) % 100_000, element(row));
         format!(
             "ATOM  {number:5}  {name:<3} MOL A   1    {x:8.3}{y:8.3}{z:8.3}  1.00  0.00          {name:>2}"
@@ -144,7 +151,7 @@ fn estimates_are_right_for_large_pictures() {
     ] {
         let layers = layers.map_or(Vec::new(), |layers| vec!["--layers", layers]);
         let args =
-            ["render", "--size", "1400x1000", "--spp", "1", "--quiet", "--json", "-o", output];
+            ["render", "--size", "1000x700", "--spp", "1", "--quiet", "--json", "-o", output];
         let report = folder.json(&[&args[..], &Vec::from_iter(scene), &layers].concat());
         let number = |name: &str| report["statistics"][name].as_f64().expect("a number");
         let ratio = number("estimated_peak_bytes") / number("peak_bytes");
@@ -173,7 +180,7 @@ fn renders_are_refused_just_below_their_estimate() {
 fn limits_of_the_shell_are_obeyed_and_named() {
     let folder = Folder::new();
     folder.write("a.toml", "[camera]\nfit = true\n[[generate]]\nkind = \"field\"\ncount = 707\n");
-    folder.write("a.txt", &rows("", |_, [x, y, z]| format!("{x} {y} {z} 0.3")));
+    folder.write("a.txt", &rows("", COUNT, |_, [x, y, z]| format!("{x} {y} {z} 0.3")));
     folder.write("one.txt", "0 0 0 0.3\n");
     let limited = |file: &str, option: &str, bytes: u64| {
         let line = format!("ulimit -{option} {}; exec \"$0\" \"$@\"", bytes >> 10);

@@ -55,7 +55,7 @@ fn differences(seed: u64) -> Option<[f64; WAYS.len()]> {
     if scene.settings.integrator != Integrator::Path {
         return None;
     }
-    (scene.settings.width, scene.settings.height, scene.settings.spp) = (12, 10, SAMPLES);
+    (scene.settings.width, scene.settings.height, scene.settings.spp) = (10, 8, SAMPLES);
     scene.settings.depth.get_or_insert(12);
     scene.settings.light_choice = LightChoice::Tree;
     scene.settings.roulette = Roulette::None;

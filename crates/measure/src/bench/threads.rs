@@ -49,7 +49,7 @@ pub fn measure(options: &Options, progress: Progress) -> Result<Report, BenchErr
     let mut outcomes = Vec::new();
     for scene in scenes {
         progress(&format!("threads: {}, 1 to {} threads", scene.name, pools.len()));
-        outcomes.push(measure_scene(scene.resized(options.pick([48, 160, 320])), &pools, options)?);
+        outcomes.push(measure_scene(scene.resized(options.pick([24, 160, 320])), &pools, options)?);
     }
     let mut settings = options.settings();
     settings.push(("most threads".to_owned(), pools.len().to_string()));

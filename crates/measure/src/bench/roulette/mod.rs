@@ -103,7 +103,7 @@ fn size(options: &Options) -> u32 {
 }
 
 fn measure_scene(scene: PaperScene, options: &Options) -> Result<SceneResult, BenchError> {
-    let reference_samples = options.pick([64, 1024, 4096]);
+    let reference_samples = options.pick([32, 1024, 4096]);
     let experiment =
         Experiment::new(&scene.scene(size(options), 1)?, reference_samples, options.rounds)?;
     let exponents = 0..options.pick([2, 3, 3]);

@@ -138,7 +138,7 @@ fn measure_elision(
     scene: NamedScene,
     options: &Options,
 ) -> Result<Outcome, BenchError> {
-    let mut scene = scene.resized(options.pick([32, 240, 640]));
+    let mut scene = scene.resized(options.pick([24, 240, 640]));
     (elision.change)(&mut scene.scene);
     scene.scene.settings.spp = options.pick([1, 16, 32]);
     let world = scene.world()?;

@@ -85,7 +85,7 @@ fn measure_scene(
     options: &Options,
     progress: Progress,
 ) -> Result<Vec<Outcome>, BenchError> {
-    let side = options.pick([64, 256, 512]);
+    let side = options.pick([32, 256, 512]);
     let mut trees = Vec::new();
     for (builder, _) in BUILDERS {
         let tree = BuiltTree::new(scene, builder)?;

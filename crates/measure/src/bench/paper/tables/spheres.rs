@@ -17,7 +17,7 @@ use spherule_render::world::World;
 const COUNTS: [u64; 6] = [10, 20, 50, 100, 200, 500];
 
 /// Maximum number of sphere tests of a render without tree, by effort: about a second, or minutes.
-const MAX_TESTS: [u64; 3] = [1_000_000_000, 1_000_000_000, 200_000_000_000];
+const MAX_TESTS: [u64; 3] = [50_000_000, 1_000_000_000, 200_000_000_000];
 
 const THREADING: Threading = Threading::Critical;
 const BRUTE: Program = Program::Brute(THREADING);
