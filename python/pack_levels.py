@@ -39,6 +39,7 @@ def main() -> None:
     parser.add_argument("--program", type=Path, required=True)
     parser.add_argument("--libexec", type=Path)
     parser.add_argument("--license", type=Path, action="append", default=[])
+    parser.add_argument("--compression", type=int, default=9)
     options = parser.parse_args()
 
     (_, first), *others = (item.split("=", 1) for item in options.modules)
@@ -85,7 +86,7 @@ def main() -> None:
     # The files that tell what it is come last, as the format asks for.
     order = sorted(files, key=lambda name: (".dist-info/" in name, name))
     packed = options.out / f"{folder.removesuffix('.dist-info')}-{tag.removeprefix('Tag: ')}.whl"
-    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as wheel:
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED, compresslevel=options.compression) as wheel:
         for name in order:
             content, executable = files[name]
             info = zipfile.ZipInfo(name, moment[:6])
