@@ -193,3 +193,13 @@ fn lattices_without_quotes_are_refused_with_the_mend() {
     let frame = read_frame(&file.path, &ReadOptions::default()).expect("a frame");
     assert_eq!(frame.cell.map(|cell| cell.vectors[2].z), Some(5.0));
 }
+
+#[test]
+fn columns_of_gro_files_may_touch() {
+    let frame = frame("full\n1\n    1SOL     OW    1-123.456-789.012-345.678\n   10 10 10\n");
+    let place = frame.position(0);
+    for (found, expected) in [(place.y, 789.012), (place.z, 345.678)] {
+        assert!((found / place.x - expected / 123.456).abs() < 1e-9, "{place:?}");
+    }
+    assert!(place.max_element() < 0.0, "{place:?}");
+}
