@@ -86,8 +86,8 @@ pub use world::World;
 pub mod color {
     #[doc(inline)]
     pub use spherule_render::color::{
-        Map, Range, RangeError, Rgb, Scale, Spacing, Tick, category, linear_from_srgb, parse, srgb,
-        ticks,
+        CustomMap, Map, Range, RangeError, Rgb, Scale, Spacing, Tick, category, linear_from_srgb,
+        parse, srgb, ticks,
     };
 }
 
@@ -158,8 +158,8 @@ pub mod compose {
     #[doc(inline)]
     pub use spherule_render::compose::{
         AnnotationRequest, Axes, Bar, CameraRequest, CellRequest, Content, Fault, Focus, LabelText,
-        Labels, LensRequest, LookAt, ROWS, Request, Sections, Shared, Staged, Subject, Template,
-        Value, change, choose, frame, light_ahead, place, position, stage, zoom,
+        Labels, LensRequest, LookAt, ROWS, Request, Sections, Shared, Staged, Subject, Survey,
+        Template, Value, change, choose, frame, light_ahead, place, position, stage, zoom,
     };
 }
 
@@ -225,6 +225,19 @@ pub mod split {
 pub mod layers {
     #[doc(inline)]
     pub use spherule_render::layers::{GROUND_PLANE, Layer, Layers, NOTHING, layers};
+}
+
+/// Drawings of annotations as vectors, and pages: SVG and PDF files of an image with a drawing over it.
+#[cfg(feature = "drawing")]
+pub mod graphics {
+    #[doc(inline)]
+    pub use spherule_render::graphics::{Drawing, Format, Page, PageError};
+}
+
+/// Videos of images, by the program `ffmpeg`.
+pub mod video {
+    #[doc(inline)]
+    pub use spherule_render::video::{Container, FPS, Video, VideoError};
 }
 
 /// Images: linear RGB in memory, their files, and their comparison.

@@ -3,7 +3,7 @@
     >>> import spherule
     >>> picture = spherule.render([[0, 0, 0], [1, 0, 0]], radius=0.5, size=(80, 60), spp=4)
 
-:func:`render` makes a picture of positions, and :class:`Scene` says how. :func:`read` reads particle files into NumPy
+:func:`render` makes a picture of positions, :func:`movie` a video of a trajectory, and :class:`Scene` says how. :func:`read` reads particle files into NumPy
 columns; :func:`from_ase` and its kin take the structures of other packages. :class:`SphereTree` answers which sphere a
 ray hits first.
 """
@@ -12,9 +12,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ._errors import Error, Interrupted, SpheruleWarning
+from ._errors import ArgumentError, Error, Interrupted, SpheruleWarning
 
 if TYPE_CHECKING:
+    from ._movie import movie
     from ._native import Stop
     from ._particles import Particles, count_frames, frames, read
     from ._picture import Picture
@@ -27,6 +28,7 @@ __version__ = "0.1.0"
 
 #: Where the other names are: they are imported when they are first used.
 _PLACES = {
+    "_movie": ("movie",),
     "_native": ("Stop",),
     "_particles": ("Particles", "count_frames", "frames", "read"),
     "_picture": ("Picture",),
@@ -39,6 +41,7 @@ _PLACES = {
 __all__ = [
     "GROUND",
     "NOTHING",
+    "ArgumentError",
     "Error",
     "Hits",
     "Interrupted",
@@ -56,6 +59,7 @@ __all__ = [
     "from_ovito",
     "from_pandas",
     "level",
+    "movie",
     "read",
     "refine",
     "render",

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from . import _matplotlib
 from ._errors import Error
 
 if TYPE_CHECKING:
@@ -226,38 +227,17 @@ def coded(name: str, value: Any, count: int) -> tuple[list[str], npt.NDArray[np.
     return list(known), codes
 
 
-#: The colors "C0" to "C9" of matplotlib, and its names for them after "tab:".
-_CYCLE = {
-    "blue": "#1f77b4",
-    "orange": "#ff7f0e",
-    "green": "#2ca02c",
-    "red": "#d62728",
-    "purple": "#9467bd",
-    "brown": "#8c564b",
-    "pink": "#e377c2",
-    "gray": "#7f7f7f",
-    "olive": "#bcbd22",
-    "cyan": "#17becf",
-}
-
-
-def _color_of(word: str) -> Any:
-    """The linear color of a CSS name, of #rrggbb, or of a name of matplotlib; None if it is none."""
-    from . import _native
-
-    if word[:1] == "C" and word[1:].isascii() and word[1:].isdigit():
-        word = list(_CYCLE.values())[int(word[1:]) % len(_CYCLE)]
-    return _native.color_of(_CYCLE.get(word.removeprefix("tab:"), word) if word.startswith("tab:") else word)
-
-
 def colors(name: str, value: Any, count: int) -> npt.NDArray[Any]:
-    """Linear colors of all particles, from a name, `#rrggbb`, one triple, or a row for each."""
+    """Linear colors of all particles, from a name, `#rrggbb`, one triple, or a row for each.
+
+    Rows of four are RGBA as matplotlib has them, which are sRGB.
+    """
     import numpy as np
 
     from . import _native
 
     if isinstance(value, str):
-        found = _color_of(value)
+        found = _matplotlib.color_of(value)
         if found is None:
             raise Error(
                 f"`{name}` is {value!r}, but must be a CSS color, #rrggbb, or an array of linear RGB from 0 to 1"
@@ -268,16 +248,20 @@ def colors(name: str, value: Any, count: int) -> npt.NDArray[Any]:
         names, codes = coded(name, value, count)
         rows = []
         for row, word in enumerate(names):
-            found = _color_of(word)
+            found = _matplotlib.color_of(word)
             if found is None:
                 raise Error(f"{name}[{int(np.argmax(codes == row))}] is {word!r}, but must be a CSS color or #rrggbb")
             rows.append(found)
         return np.array(rows, np.float32)[codes]
     encoded = getattr(value, "dtype", None) == np.uint8
     array = floats(name, value)
-    if encoded:
+    if encoded and array.ndim:
         levels = np.array([_native.linear_color((code / 255.0,) * 3)[0] for code in range(256)], np.float32)
-        array = levels[np.asarray(value)]
+        array = np.concatenate([levels[array[..., :3].astype(int)], array[..., 3:] / 255.0], axis=-1)
+    if array.shape in ((4,), (count, 4)):
+        if (array[..., 3] != 1).any():
+            raise Error(f"`{name}` has colors with an alpha other than 1; give `opacity` instead")
+        array = array[..., :3] if encoded else _matplotlib.linear(array[..., :3])
     if array.ndim == 1 and array.shape == (3,):
         return np.broadcast_to(array, (count, 3))
     if array.ndim != 2 or array.shape != (count, 3):

@@ -14,11 +14,14 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ._spherule import (
+        Drawn as Drawn,
+        FrameSequence as FrameSequence,
         Matte as Matte,
         Refinement as Refinement,
         Scene as Scene,
         SphereTree as SphereTree,
         Stop as Stop,
+        Video as Video,
         color_of as color_of,
         compiled_level as compiled_level,
         count_frames as count_frames,

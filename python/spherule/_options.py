@@ -7,6 +7,7 @@ import inspect
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
+from ._errors import ArgumentError
 from .sections import LayerName, Sections
 
 if TYPE_CHECKING:
@@ -49,8 +50,8 @@ if TYPE_CHECKING:
         select: str
         colors: str
         color_by: str
-        color_map: ColorMap | Literal["categories"]
-        color_range: tuple[float | str, float | str]
+        color_map: ColorMap | Literal["categories"] | Any
+        color_range: tuple[float | str, float | str] | Any
         color_title: str
         color_log: bool
         color_bar: bool | Position | ColorBar
@@ -132,7 +133,7 @@ def check(given: Iterable[str], *known: frozenset[str]) -> None:
     for name in given:
         if name not in names:
             near = difflib.get_close_matches(name, names, 1)
-            raise TypeError(f"unknown argument `{name}`" + (f"; did you mean `{near[0]}`?" if near else ""))
+            raise ArgumentError(f"unknown argument `{name}`" + (f"; did you mean `{near[0]}`?" if near else ""))
 
 
 def signed(thing: Any, *known: frozenset[str]) -> None:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import _arrays, _values
-from ._errors import Error, SpheruleWarning
+from ._errors import Error, from_call, warn
 
 if TYPE_CHECKING:
     import numpy as np
@@ -121,6 +120,7 @@ class Particles:
     _first_frame: tuple[dict[str, Any], npt.NDArray[Any]] | None
     _materials: tuple[list[str], npt.NDArray[np.uint32]] | None
 
+    @from_call
     def __init__(
         self,
         positions: Any,
@@ -292,6 +292,7 @@ def _options(
     return {"format": format, "columns": columns, "atom_style": atom_style, "topology": path, "bonds": bonds}
 
 
+@from_call
 def read(
     path: str | os.PathLike[str],
     frame: int = 0,
@@ -357,10 +358,11 @@ def read(
     particles.warnings = [text.replace("--frame chooses", "`frame` chooses") for text in table["warnings"]]
     for text in particles.warnings:
         if "`frame` chooses" not in text:
-            warnings.warn(f"{name}: {text}", SpheruleWarning, stacklevel=2)
+            warn(f"{name}: {text}")
     return particles
 
 
+@from_call
 def count_frames(
     path: str | os.PathLike[str],
     *,

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from . import _values
-from ._errors import Error
+from ._errors import Error, from_call
 
 if TYPE_CHECKING:
     import numpy as np
@@ -30,6 +30,8 @@ class Picture:
         complete: False if the render was interrupted: then it is not denoised, and has no outlines, depth cue or
             layers of camera rays.
         spp: The least and the greatest number of samples of a pixel.
+        sampled: The share of pixels that have samples: less than 1 if the render was interrupted before each had one. The
+            others show the background.
         samples, rays, seconds: Samples and rays of all pixels, and the time of the render.
         dpi: Pixels per inch on paper, which PNG, TIFF, JPEG and EXR files store; None if it is not known.
         exposure, tone: How it is displayed and saved: stops, and ``"linear"`` or ``"filmic"``.
@@ -43,6 +45,7 @@ class Picture:
     denoised: bool
     complete: bool
     spp: tuple[int, int]
+    sampled: float
     samples: int
     rays: int
     seconds: float
@@ -53,9 +56,13 @@ class Picture:
 
     def __init__(self, table: Mapping[str, Any]) -> None:
         for name, value in table.items():
-            if name not in ("matte", "warnings"):
+            if name not in ("matte", "drawn", "warnings"):
                 setattr(self, name, value)
-        self._matte = table["matte"]
+        self._matte, self._drawn = table["matte"], table["drawn"]
+
+    def __getstate__(self) -> dict[str, Any]:
+        # A copy elsewhere has the annotations as pixels.
+        return {**self.__dict__, "_drawn": None}
 
     @property
     def width(self) -> int:
@@ -74,6 +81,8 @@ class Picture:
             facts.append(f"error {100 * self.error:.2g} %")
         if not self.complete:
             facts.append("interrupted")
+        if self.sampled < 1:
+            facts.append(f"{100 * self.sampled:.1f} % of pixels sampled")
         return f"<spherule.Picture: {', '.join(facts)}>"
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> npt.NDArray[Any]:
@@ -83,6 +92,7 @@ class Picture:
             return self.pixels.astype(dtype or self.pixels.dtype)
         return self.pixels
 
+    @from_call
     def srgb(self) -> npt.NDArray[np.uint8]:
         """The picture as a display shows it: exposed, by its tone curve, sRGB.
 
@@ -101,11 +111,13 @@ class Picture:
 
         return _native.display_codes(self._floats(), float(self.exposure), self._filmic())
 
+    @from_call
     def encode(self, format: str = "png", *, bits: int = 8, quality: int | None = None) -> bytes:
         """The bytes of a file.
 
         Args:
-            format: ``"png"``, ``"exr"``, ``"jpg"``, ``"tiff"``, ``"webp"``, ``"pfm"`` or ``"ppm"``.
+            format: ``"png"``, ``"exr"``, ``"jpg"``, ``"tiff"``, ``"webp"``, ``"pfm"``, ``"ppm"``, ``"pdf"`` or ``"svg"``;
+                the last two are pages with the picture and its annotations as vectors.
             bits: 8 or 16 per channel, for PNG, TIFF and PPM.
             quality: 1 to 100, for JPEG.
 
@@ -136,10 +148,11 @@ class Picture:
             "dpi": None if self.dpi is None else _values.integer("dpi", self.dpi, 1, 65535),
             "metadata": metadata,
         }
-        return _native.encode(self._floats(), self._matte, table)
+        return _native.encode(self._floats(), self._matte, self._drawn, table)
 
+    @from_call
     def save(self, path: str | os.PathLike[str], *, bits: int = 8, quality: int | None = None) -> None:
-        """Writes a file in the format that its name ends in: PNG, EXR, JPEG, TIFF, WebP, PFM or PPM.
+        """Writes a file in the format that its name ends in: PNG, EXR, JPEG, TIFF, WebP, PFM, PPM, PDF or SVG.
 
         Args:
             path: The file, which is replaced once the new one is complete.

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from . import _options, _values
-from ._errors import Error, Interrupted, SpheruleWarning
+from ._errors import Error, Interrupted, from_call, warn
 from ._picture import Picture
-from ._progress import reporting
+from ._progress import Report, reporting
 from ._scene import Scene
 
 if TYPE_CHECKING:
@@ -47,10 +46,26 @@ def _stop(given: dict[str, Any]) -> Any:
 
 def _shown(table: dict[str, Any]) -> Picture:
     for text in table["warnings"]:
-        warnings.warn(text, SpheruleWarning, stacklevel=4)
+        warn(text)
     return Picture(table)
 
 
+def rendered(
+    scene: Scene,
+    table: dict[str, Any],
+    given: dict[str, Any],
+    report: Report | None,
+    first_frame: int | None = None,
+    *,
+    is_own: bool = False,
+) -> Picture:
+    """The picture of a scene, which is used up if it is the call's own."""
+    from . import _native
+
+    return _shown(_native.render(scene._native, table, is_own, _stop(given), report, first_frame))
+
+
+@from_call
 def render(source: Any = None, **options: Unpack[AllOptions]) -> Picture:
     """Renders a picture.
 
@@ -91,25 +106,27 @@ def render(source: Any = None, **options: Unpack[AllOptions]) -> Picture:
         >>> picture.pixels.shape, picture.pixels.dtype
         ((60, 80, 3), dtype('float32'))
     """
-    from . import _native
-
     given: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
     on_interrupt = given.get("on_interrupt", "return")
     if on_interrupt not in ("return", "raise"):
         raise Error(f"`on_interrupt` is {on_interrupt!r}, but must be return or raise")
     table = _options.render_table(given)
     scene, is_own = _scene(source, given)
-    stop = _stop(given)
     with reporting(given.get("progress")) as report:
-        picture = _shown(_native.render(scene._native, table, is_own, stop, report))
+        picture = rendered(scene, table, given, report, is_own=is_own)
+    stop = _stop(given)
     if picture.complete or (stop is not None and stop.is_set()):
         return picture
     if on_interrupt == "raise":
         raise Interrupted(picture)
-    warnings.warn("interrupted: the picture is incomplete", SpheruleWarning, stacklevel=2)
+    gaps = ""
+    if picture.sampled < 1:
+        gaps = f": {100 * picture.sampled:.1f} % of its pixels are sampled, the others show the background"
+    warn(f"interrupted: the picture is incomplete{gaps}")
     return picture
 
 
+@from_call
 def refine(source: Any = None, seconds: float = 0.5, **options: Unpack[AllOptions]) -> Iterator[Picture]:
     """Renders step by step: an iterator of pictures with less and less noise, for live display.
 

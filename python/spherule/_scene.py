@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from . import _arrays, _options, _toml, _values, friends
-from ._errors import Error, SpheruleWarning
+from . import _arrays, _matplotlib, _options, _toml, _values, friends
+from ._errors import Error, from_call, warn
 from ._particles import Particles, read
 
 if TYPE_CHECKING:
@@ -17,6 +16,8 @@ if TYPE_CHECKING:
     from ._native import Scene as NativeScene
     from ._options import RenderOptions, SceneOptions
     from ._picture import Picture
+
+    Arguments = tuple[dict[str, Any], dict[str, Any] | None, dict[str, Any], dict[str, Any]]
 
 
 class Scene:
@@ -42,7 +43,8 @@ class Scene:
         color_by: The name of a column that gives the colors, or an expression over columns, as in
             ``"norm(velocity)"`` or ``"c_pe / mass"``: ``+ - * / ^``, ``abs``, ``sqrt``, ``exp``, ``log``, ``log10``,
             ``min``, ``max`` and ``norm``.
-        color_map, color_range, color_log: The map, its ends, and whether it is logarithmic. An end is a number, a
+        color_map, color_range, color_log: The map, its ends, and whether it is logarithmic. A map is a name, also of
+            matplotlib, a ``Colormap`` of matplotlib, or a list of colors; a ``Normalize`` or ``LogNorm`` is a range. An end is a number, a
             percentile of the values as in ``("2%", "98%")``, or ``"auto"``. The map ``"categories"`` is a color for each
             integer; at most 12 different integers of labels such as ``cluster`` or ``mol`` have them without it.
         color_title: The title of the color bar; ``v_x`` and ``m^2`` have subscripts and superscripts.
@@ -112,12 +114,18 @@ class Scene:
         >>> Scene(camera={"fov": 200}, sphere=[{"center": [0, 0, 0], "radius": 1}])
         Traceback (most recent call last):
             ...
-        spherule._errors.Error: [camera] fov = 200: `fov` is 200, but must be more than 0 and less than 180
+        spherule.Error: [camera] fov = 200: `fov` is 200, but must be more than 0 and less than 180
     """
 
+    @from_call
     def __init__(self, particles: Any = None, **options: Unpack[SceneOptions]) -> None:
         from . import _native
 
+        self._made(_native.Scene(*self.arguments(particles, options)))
+
+    @staticmethod
+    def arguments(particles: Any, options: Mapping[str, Any]) -> Arguments:
+        """What the extension module makes a scene of; for the package alone."""
         given: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
         triangles, first = _arrays.triangles(given.pop("triangles", None))
         _options.check(given, _options.PARTICLES, _options.STYLE, _options.SECTIONS)
@@ -141,23 +149,29 @@ class Scene:
         columns = None
         if particles is not None:
             columns = _columns(particles, given, sections)
-        self._made(
-            _native.Scene(
-                {"text": text, "folder": os.getcwd(), "keys": keys, "triangles": triangles},
-                columns,
-                _style(given),
-                _view(given, {"color_bar": color_bar, **placed}, labels, camera),
-            )
+        return (
+            {"text": text, "folder": os.getcwd(), "keys": keys, "triangles": triangles},
+            columns,
+            _style(given),
+            _view(given, {"color_bar": color_bar, **placed}, labels, camera),
         )
+
+    @classmethod
+    def of_native(cls, native: NativeScene) -> Scene:
+        """The scene that the extension module has made; for the package alone."""
+        scene = cls.__new__(cls)
+        scene._made(native)
+        return scene
 
     _native: NativeScene
 
     def _made(self, native: NativeScene) -> None:
         self._native = native
         for text in self._native.warnings:
-            warnings.warn(text, SpheruleWarning, stacklevel=4)
+            warn(text)
 
     @classmethod
+    @from_call
     def load(cls, path: str | os.PathLike[str], **options: Unpack[SceneOptions]) -> Scene:
         """Reads a scene file, or a particle file, which options then style.
 
@@ -180,16 +194,12 @@ class Scene:
         name = _values.path("path", path)
         if not name.lower().endswith(".toml"):
             options.setdefault("title", os.path.basename(name))
-            bonds = options.get("bonds")
-            if bonds is None and _may_need_bonds(options):
-                bonds = "auto"
-            return cls(read(name, bonds=None if bonds == "none" else bonds), **options)
+            return cls(read(name, **file_options(options)), **options)
         if options:
             raise Error("options for particles need a particle file; a scene defines its own colors and materials")
-        scene = cls.__new__(cls)
-        scene._made(_native.Scene.load(name))
-        return scene
+        return cls.of_native(_native.Scene.load(name))
 
+    @from_call
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes a scene file that loads as the same scene, with a ``.csv`` file of its spheres beside it.
 
@@ -233,6 +243,7 @@ class Scene:
         found = self._native.bounds
         return found
 
+    @from_call
     def render(self, **options: Unpack[RenderOptions]) -> Picture:
         """Renders the scene: see :func:`spherule.render`, of which this has the arguments of renders.
 
@@ -244,6 +255,7 @@ class Scene:
 
         return render(self, **options)
 
+    @from_call
     def refine(self, seconds: float = 0.5, **options: Unpack[RenderOptions]) -> Iterator[Picture]:
         """Renders the scene step by step: see :func:`spherule.refine`.
 
@@ -280,6 +292,14 @@ def _restored(*columns: Any) -> Scene:
     scene = Scene.__new__(Scene)
     scene._native = _native.Scene.of_columns(text, [aligned(column) for column in places], *map(aligned, others))
     return scene
+
+
+def file_options(options: Mapping[str, Any]) -> dict[str, Any]:
+    """How a file is read for a scene with these options."""
+    bonds = options.get("bonds")
+    if bonds is None and _may_need_bonds(options):
+        bonds = "auto"
+    return {"bonds": None if bonds == "none" else bonds}
 
 
 def _may_need_bonds(options: Mapping[str, Any]) -> bool:
@@ -394,13 +414,18 @@ def _style(given: Mapping[str, Any]) -> dict[str, Any]:
             material = _values.text(f"types[{name!r}].material", material)
         types.append((name, radius, color, material, opacity))
     ends = given.get("color_range")
+    color_log = _values.flag("color_log", given.get("color_log", False))
+    if (norm := _matplotlib.range_of(ends)) is not None:
+        ends, is_log = norm
+        color_log |= is_log
     if ends is not None:
         low, high = _values.items("color_range", ends, _end, 2)
         if not (isinstance(low, str) or isinstance(high, str) or low <= high):
             raise Error(f"`color_range` is {low:g} to {high:g}, but the lower number comes first")
         ends = ",".join(end if isinstance(end, str) else repr(end) for end in (low, high))
-    names = ("select", "hide", "colors", "color_by", "color_map", "color_title", "model", "bonds", "translucent")
+    names = ("select", "hide", "colors", "color_by", "color_title", "model", "bonds", "translucent")
     style: dict[str, Any] = {name: _optional(given, name, _values.text) for name in names}
+    style["color_map"] = _optional(given, "color_map", _matplotlib.map_words)
     through = given.get("opacity")
     if not (through is None or isinstance(through, str)):
         through = repr(_values.number("opacity", through))
@@ -414,7 +439,6 @@ def _style(given: Mapping[str, Any]) -> dict[str, Any]:
         raise Error("`polyhedra_opacity` needs `polyhedra`")
     style.update(_arrows(given))
     style["bond_radius"] = _optional(given, "bond_radius", _values.number)
-    color_log = _values.flag("color_log", given.get("color_log", False))
     styles = _styles(given.get("styles"))
     return {**style, "color_range": ends, "color_log": color_log, "types": types, "styles": styles}
 
@@ -443,6 +467,8 @@ def _selected(select: str, look: Any) -> tuple[str, tuple[float, ...] | None]:
         if key == "color" and not isinstance(value, str):
             color = tuple(float(channel) for channel in _arrays.colors(at, value, 1)[0])
             value = "white"
+        elif key == "map":
+            value = _matplotlib.map_words(at, value)
         elif isinstance(value, bool):
             value = "yes" if value else "no"
         elif isinstance(value, (tuple, list)):

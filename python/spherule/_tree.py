@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from . import _arrays, _options, _values
-from ._errors import Error
+from ._errors import Error, from_call
 
 if TYPE_CHECKING:
     import numpy as np
@@ -60,6 +60,7 @@ class SphereTree:
         ([2.0, 5.5, inf], [True, True, False], [0, 1])
     """
 
+    @from_call
     def __init__(self, positions: Any, radius: Any, *, threads: int | None = None) -> None:
         from . import _native
 
@@ -79,6 +80,7 @@ class SphereTree:
         """Bytes of the tree and its spheres."""
         return self._tree.nbytes
 
+    @from_call
     def intersect(
         self, origins: Any, directions: Any, *, t_max: Any = None, surface: bool = False, threads: int | None = None
     ) -> Hits:
@@ -111,6 +113,7 @@ class SphereTree:
         points, normals = surfaces or (None, None)
         return Hits(t, sphere, points, normals)
 
+    @from_call
     def occluded(
         self, origins: Any, directions: Any, *, t_max: Any = None, threads: int | None = None
     ) -> npt.NDArray[np.bool_]:
@@ -131,6 +134,7 @@ class SphereTree:
         """
         return self._tree.occluded(*self._rays(origins, directions, t_max), _options.threads(threads))
 
+    @from_call
     def count(self, origins: Any, directions: Any, *, t_max: Any = None, threads: int | None = None) -> int:
         """Count the rays that hit anything.
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import _options
-from ._errors import Error
+from ._errors import Error, from_call
 from ._picture import Picture
 from ._render import _shown
 from ._scene import Scene
@@ -35,6 +35,7 @@ def _table(scene: Scene, options: Any) -> dict[str, Any]:
     return _options.render_table({"denoise": "off", **given})
 
 
+@from_call
 def render_part(scene: Scene, part: int, parts: int, **options: Unpack[RenderOptions]) -> bytes:
     """Renders one of several parts of a picture.
 
@@ -62,6 +63,7 @@ def render_part(scene: Scene, part: int, parts: int, **options: Unpack[RenderOpt
     return _native.render_part(scene._native, _table(scene, options), part, parts, options.get("stop"))
 
 
+@from_call
 def merge(scene: Scene, pieces: Sequence[bytes], **options: Unpack[RenderOptions]) -> Picture:
     """Merges all parts of a picture, in any order.
 
@@ -91,6 +93,7 @@ def merge(scene: Scene, pieces: Sequence[bytes], **options: Unpack[RenderOptions
     return _shown(_native.merge(scene._native, _table(scene, options), list(pieces)))
 
 
+@from_call
 def render(
     scene: Scene,
     client: Any = None,

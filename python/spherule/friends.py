@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ._errors import Error
+from ._errors import Error, from_call
 from ._particles import Particles
 
 #: Names of columns of data frames, by role.
@@ -26,6 +26,7 @@ def _need(thing: Any, name: str, what: str) -> Any:
         raise Error(f"expected {what}, but {type(thing).__name__} has no `{name}`") from None
 
 
+@from_call
 def from_ase(atoms: Any) -> Particles:
     """The particles of ASE's ``Atoms``: positions in angstrom, elements, the cell, and its per-atom arrays as columns.
 
@@ -62,6 +63,7 @@ def from_ase(atoms: Any) -> Particles:
     )
 
 
+@from_call
 def from_mdanalysis(group: Any) -> Particles:
     """The particles of an MDAnalysis ``Universe`` or ``AtomGroup``, in its current frame, in angstrom.
 
@@ -129,6 +131,7 @@ def from_mdanalysis(group: Any) -> Particles:
     )
 
 
+@from_call
 def from_ovito(data: Any) -> Particles:
     """The particles of OVITO's ``DataCollection``, as ``pipeline.compute()`` returns it.
 
@@ -223,6 +226,7 @@ def from_ovito(data: Any) -> Particles:
     )
 
 
+@from_call
 def from_gsd(frame: Any) -> Particles:
     """The particles of a frame of ``gsd.hoomd``: positions, diameters, ellipsoids, types, bonds, the box, and other properties as
     columns.
@@ -302,6 +306,7 @@ def from_gsd(frame: Any) -> Particles:
     )
 
 
+@from_call
 def from_pandas(
     frame: Any,
     *,

@@ -88,7 +88,7 @@ class ColorBar(_ColorBar, total=False):
     """``[color_bar]``, for colors that were made elsewhere."""
 
     log: bool
-    map: Literal["viridis", "cividis", "inferno", "magma", "plasma", "turbo", "coolwarm"]
+    map: Literal["viridis", "cividis", "inferno", "magma", "plasma", "turbo", "coolwarm"] | str
     reversed: bool
     label: str
     position: Position

@@ -5,6 +5,8 @@ use crate::pools::pool;
 use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray3};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
+use spherule::graphics::{self, Drawing, Page};
+use spherule::image::tone::DisplayTransform;
 use spherule::image::{
     Channel, Depth, Format, Image, ImageError, Metadata, QUALITY, Values, WriteOptions,
 };
@@ -22,11 +24,50 @@ impl Matte {
         Self(matte)
     }
 
-    /// Alpha as a channel, for formats that blend linear or encoded values.
-    fn channel(&self, format: Format) -> Channel {
-        let values = if format == Format::Exr { self.0.linear() } else { self.0.encoded() };
+    /// Alpha as a channel, for formats that blend linear or encoded values; without what is `drawn` over the picture, if
+    /// that is drawn otherwise.
+    fn channel(&self, format: Format, drawn: Option<&Drawn>) -> Channel {
+        let mut matte = self.0.clone();
+        for &(row, coverage) in drawn.map_or(&[][..], |drawn| &drawn.coverage) {
+            matte.coverage[row as usize] = coverage;
+        }
+        let values = if format == Format::Exr { matte.linear() } else { matte.encoded() };
         Channel { name: "A".to_owned(), values: Values::Floats(values) }
     }
+}
+
+/// Annotations of a picture, and the pixels under them: files of vectors have them as vectors.
+#[pyclass(frozen, module = "spherule._spherule")]
+pub(crate) struct Drawn {
+    drawing: Drawing,
+    /// Width and height of the picture.
+    size: (u32, u32),
+    /// Rows of pixels that the annotations change, and their colors without them.
+    pixels: Vec<(u32, [f32; 3])>,
+    /// The same of the coverage of the matte.
+    coverage: Vec<(u32, f32)>,
+}
+
+impl Drawn {
+    /// Draws over a canvas, and remembers what was there.
+    pub(crate) fn over(canvas: &mut overlay::Canvas, drawing: Drawing) -> Self {
+        let pixels = canvas.image.pixels.clone();
+        let coverage = canvas.matte.as_ref().map(|matte| matte.coverage.clone());
+        canvas.draw(|image| drawing.draw_over(image));
+        let covered = canvas.matte.as_ref().map_or(&[][..], |matte| &matte.coverage);
+        Self {
+            drawing,
+            size: (canvas.image.width, canvas.image.height),
+            pixels: changed(&pixels, &canvas.image.pixels),
+            coverage: changed(&coverage.unwrap_or_default(), covered),
+        }
+    }
+}
+
+/// The rows that differ, and their values before.
+fn changed<T: Copy + PartialEq>(before: &[T], after: &[T]) -> Vec<(u32, T)> {
+    let rows = (0..).zip(before.iter().zip(after));
+    rows.filter(|(_, (before, after))| before != after).map(|(row, (own, _))| (row, *own)).collect()
 }
 
 /// Format and options of an encoded picture.
@@ -44,7 +85,7 @@ pub(crate) struct EncodeTable {
     metadata: Vec<(String, String)>,
 }
 
-fn image(pixels: &PyReadonlyArray3<'_, f32>) -> Result<Image, ImageError> {
+pub(crate) fn image(pixels: &PyReadonlyArray3<'_, f32>) -> Result<Image, ImageError> {
     let pixels = pixels.as_array();
     let (height, width, _) = pixels.dim();
     let row = |row: numpy::ndarray::ArrayView1<f32>| [row[0], row[1], row[2]];
@@ -52,7 +93,7 @@ fn image(pixels: &PyReadonlyArray3<'_, f32>) -> Result<Image, ImageError> {
     Image::new(width as u32, height as u32, values)
 }
 
-fn tone(filmic: bool) -> Tone {
+pub(crate) fn tone(filmic: bool) -> Tone {
     if filmic { Tone::Filmic } else { Tone::Linear }
 }
 
@@ -62,11 +103,21 @@ pub(crate) fn encode<'py>(
     py: Python<'py>,
     pixels: PyReadonlyArray3<'py, f32>,
     matte: Option<&Matte>,
+    drawn: Option<&Drawn>,
     table: EncodeTable,
 ) -> PyResult<Bound<'py, PyBytes>> {
     let fault = |why: ImageError| error(py, &why);
-    let format = Format::of_suffix(&table.path).map_err(fault)?;
-    let image = image(&pixels).map_err(fault)?;
+    let page = graphics::Format::of_suffix(&table.path);
+    let page = page.filter(|page| *page != graphics::Format::Png);
+    let format = page.map_or_else(|| Format::of_suffix(&table.path), |_| Ok(Format::Png));
+    let format = format.map_err(fault)?;
+    let mut image = image(&pixels).map_err(fault)?;
+    let size = (image.width, image.height);
+    // Of a picture that was cut, annotations stay pixels.
+    let drawn = drawn.filter(|drawn| page.is_some() && drawn.size == size);
+    for &(row, color) in drawn.map_or(&[][..], |drawn| &drawn.pixels) {
+        image.pixels[row as usize] = color;
+    }
     let mut metadata = Metadata::new();
     for (name, text) in &table.metadata {
         metadata.push(name, text.replace('\0', " "));
@@ -80,11 +131,24 @@ pub(crate) fn encode<'py>(
         metadata,
         ..WriteOptions::default()
     };
-    let channels: Vec<Channel> = matte.map(|matte| matte.channel(format)).into_iter().collect();
+    let channels: Vec<Channel> =
+        matte.map(|matte| matte.channel(format, drawn)).into_iter().collect();
     // Not on the threads of the process as a whole, which a fork does not have.
     let pool = pool(py, None)?;
     let bytes = py.detach(|| pool.install(|| image.encode(format, &channels, &options)));
-    let bytes = bytes.map_err(fault)?;
+    let mut bytes = bytes.map_err(fault)?;
+    if let Some(format) = page {
+        let none = Drawing::default();
+        let page = Page {
+            size,
+            picture: Some(&bytes),
+            drawing: drawn.map_or(&none, |drawn| &drawn.drawing),
+            display: DisplayTransform::nearest(options.exposure, options.tone),
+            resolution: options.resolution,
+            metadata: &options.metadata,
+        };
+        bytes = page.file(format).map_err(|why| error(py, &why))?;
+    }
     Ok(PyBytes::new(py, &bytes))
 }
 
@@ -96,7 +160,7 @@ pub(crate) fn display_codes<'py>(
     exposure: f64,
     filmic: bool,
 ) -> PyResult<Bound<'py, PyArray3<u8>>> {
-    let transform = spherule::image::tone::DisplayTransform::new(exposure, tone(filmic));
+    let transform = DisplayTransform::new(exposure, tone(filmic));
     let transform = transform.map_err(|why| error(py, &why))?;
     let pixels = pixels.as_array();
     let (height, width, _) = pixels.dim();

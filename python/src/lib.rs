@@ -12,6 +12,7 @@ mod encode;
 mod errors;
 mod first_frame;
 mod level;
+mod movie;
 mod options;
 mod parts;
 mod pools;
@@ -26,9 +27,11 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _spherule {
     #[pymodule_export]
-    use super::encode::{Matte, display_codes, encode};
+    use super::encode::{Drawn, Matte, display_codes, encode};
     #[pymodule_export]
     use super::level::{compiled_level, missing_features, packaged_levels};
+    #[pymodule_export]
+    use super::movie::{FrameSequence, Video};
     #[pymodule_export]
     use super::parts::{merge, render_part};
     #[pymodule_export]

@@ -8,11 +8,13 @@ use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use spherule::color::{self, Rgb};
 use spherule::compose::{
-    self, AnnotationRequest, CameraRequest, CellRequest, Content, LookAt, ROWS, Request, Subject,
-    Value,
+    self, AnnotationRequest, CameraRequest, CellRequest, Content, LookAt, ROWS, Request, Shared,
+    Staged, Subject, Survey, Value,
 };
 use spherule::particles::{FileError, NumberColumn, ParticleFrame, ReadOptions};
-use spherule::scene::particles::{Boundary, FirstFrame, Outside, ParticleStyle, of_frame_in};
+use spherule::scene::particles::{
+    Boundary, FirstFrame, Outside, ParticleStyle, Particles, TrajectoryReader, of_frame_in,
+};
 use spherule::scene::{
     Anchor, Axis, Camera, EnvironmentMap, Preset, SliceMode, SlicePlane, Spheres,
     text_without_columns, write,
@@ -62,7 +64,7 @@ type SceneColumns<'py> = (
 /// Sections as in a scene file.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-struct Sections<'py> {
+pub(crate) struct Sections<'py> {
     /// TOML.
     text: String,
     /// The folder of the files that it names.
@@ -76,7 +78,7 @@ struct Sections<'py> {
 /// Options for the looks of particles, by the names that the program has for them.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-struct ViewTable {
+pub(crate) struct ViewTable {
     preset: Option<String>,
     view: Option<String>,
     look_at: Option<String>,
@@ -101,8 +103,11 @@ struct ViewTable {
     slice_mode: Option<String>,
 }
 
+/// The arguments of a scene of particles.
+pub(crate) type SceneArguments<'py> = (Sections<'py>, ParticleTable<'py>, StyleTable, ViewTable);
+
 /// A scene, and facts about its particles.
-struct Numbered {
+pub(crate) struct Numbered {
     scene: spherule::Scene,
     /// Row in the user's arrays of each sphere, unless they are the same.
     rows: Option<Vec<u32>>,
@@ -178,17 +183,10 @@ impl Scene {
         let made = match particles {
             None if request.style.framed.is_some() => Err(LOOK_AT.to_owned().into()),
             None => complete(given, &request),
-            Some(mut table) => {
-                let first_frame = table.first_frame.take();
-                let (frame, options) = table.frame(py)?;
-                let first_frame = first_frame.map(|first| first.first_frame(frame.format));
-                let framed = request.style.framed.take();
-                request.style = ParticleStyle { framed, ..style.style(py, options.radius_scale)? };
-                if request.annotations.color_bar.is_some() {
-                    request.style.coloring.prefer_map();
-                }
+            Some(table) => {
                 let sections = compose::Sections { scene: given, keys: sections.keys };
-                let work = Work { frame, first_frame, options, request, sections };
+                request.sections = Some(sections);
+                let work = Work::of(py, table, style, request)?;
                 // Copies and orientation of many particles take a while.
                 Watcher::default().run(py, pool(py, None)?, |_| work.scene())?.0
             }
@@ -298,7 +296,7 @@ impl Scene {
 }
 
 impl Scene {
-    fn of(Numbered { scene, rows, first_frame }: Numbered) -> Self {
+    pub(crate) fn of(Numbered { scene, rows, first_frame }: Numbered) -> Self {
         Self { held: Arc::new(Mutex::new(scene)), rows: rows.map(Arc::from), first_frame }
     }
 
@@ -442,25 +440,92 @@ fn complete(scene: spherule::Scene, request: &Request) -> Result<Numbered, Fault
 }
 
 /// Particles, style and sections of a scene of particles.
-struct Work {
+pub(crate) struct Work {
     frame: ParticleFrame,
     first_frame: Option<FirstFrame>,
     options: ReadOptions,
+    /// With the sections that are given.
     request: Request,
-    /// The sections that are given.
-    sections: compose::Sections,
 }
 
 impl Work {
+    pub(crate) fn of(
+        py: Python<'_>,
+        mut table: ParticleTable<'_>,
+        style: StyleTable,
+        mut request: Request,
+    ) -> PyResult<Self> {
+        let first_frame = table.first_frame.take();
+        let (frame, options) = table.frame(py)?;
+        let first_frame = first_frame.map(|first| first.first_frame(frame.format));
+        let framed = request.style.framed.take();
+        request.style = ParticleStyle { framed, ..style.style(py, options.radius_scale)? };
+        if request.annotations.color_bar.is_some() {
+            request.style.coloring.prefer_map();
+        }
+        Ok(Self { frame, first_frame, options, request })
+    }
+
+    /// The work of a frame of a sequence, in which single frames may be empty; `arguments` are those of [`Scene`].
+    pub(crate) fn of_frame(
+        py: Python<'_>,
+        (sections, table, style, view): SceneArguments<'_>,
+    ) -> PyResult<Self> {
+        let mut request = view.request().map_err(|fault| fault.raise(py))?;
+        let scene = sections.parse().map_err(|fault| fault.raise(py))?;
+        request.sections = Some(compose::Sections { scene, keys: sections.keys });
+        let mut work = Self::of(py, table, style, request)?;
+        (work.options.allow_empty, work.request.style.allow_empty) = (true, true);
+        Ok(work)
+    }
+
     /// Makes the scene, whose camera is not placed: its size may change. Sections that are given replace what the preset
     /// has.
-    fn scene(self) -> Result<Numbered, Fault> {
+    fn scene(mut self) -> Result<Numbered, Fault> {
+        let count = self.frame.len();
+        let (title, particles) = self.particles(None)?;
+        let mut staged = stage(&self.request, &title, particles, None)?;
+        compose::choose(&self.request, &mut staged)?;
+        append_bodies(&self.request, &mut staged, count);
+        compose::light_ahead(&self.request, &mut staged)?;
+        Ok(self.numbered(staged))
+    }
+
+    /// Surveys the frame of a sequence.
+    pub(crate) fn survey(mut self, survey: &mut Option<Survey>) -> Result<(), Fault> {
+        let count = self.frame.len();
+        let first_frame = self.first_frame.take();
+        let new = || Survey::new(TrajectoryReader::of_first(first_frame));
+        let survey = survey.get_or_insert_with(new);
+        let (title, particles) = self.particles(Some(survey))?;
+        let request = survey.begin_frame(&self.request, &particles);
+        let mut staged = stage(&request, &title, particles, None)?;
+        append_bodies(&self.request, &mut staged, count);
+        Ok(survey.add(&self.request, staged)?)
+    }
+
+    /// Makes the scene of the frame of a sequence, with what all frames share.
+    pub(crate) fn scene_of(mut self, survey: &mut Survey) -> Result<Numbered, Fault> {
+        survey.check(Path::new(ARRAYS), &self.request.style)?;
+        let count = self.frame.len();
+        survey.fix_colors(&mut self.request.style);
+        survey.fix_arrows(self.request.style.arrows.as_mut());
+        let shared = survey.shared(&self.request, None)?;
+        let (title, particles) = self.particles(Some(survey))?;
+        let mut staged = stage(&self.request, &title, particles, Some(&shared))?;
+        append_bodies(&self.request, &mut staged, count);
+        compose::place(&self.request, &mut staged, Some(&shared), None)?;
+        Ok(self.numbered(staged))
+    }
+
+    /// Takes the title and the particles, by the choices of a sequence if they are of one.
+    fn particles(&mut self, survey: Option<&mut Survey>) -> Result<(String, Particles), Fault> {
         let renumbers = self.renumbers();
-        let Self { mut frame, first_frame, options, mut request, sections } = self;
-        let count = frame.len();
+        let mut frame = std::mem::take(&mut self.frame);
+        let Self { options, request, .. } = self;
         if renumbers || has_undrawn_rows(&frame) || !frame.shapes.is_empty() {
             // Columns of numbers follow their rows through selections and copies.
-            let values = (0..count).map(|row| row as f64).collect();
+            let values = (0..frame.len()).map(|row| row as f64).collect();
             frame.numbers.push(NumberColumn { name: ROWS.to_owned(), values });
         }
         let path = Path::new(ARRAYS);
@@ -471,26 +536,22 @@ impl Work {
             .add_derived_columns(&columns, &bonds)
             .and_then(|()| frame.find_bonds(&bonds))
             .map_err(|message| FileError::whole_file(path, message))?;
-        let particles = Box::new(of_frame_in(path, frame, &options, first_frame)?);
-        request.sections = Some(sections);
-        let content = Content::Particles(particles);
-        let mut staged = compose::stage(&request, &subject(&title), content, None)?;
-        if request.annotations.color_bar.is_some() && staged.legend.is_none() {
-            return Err(Fault::Text(
-                "`color_bar` needs colors that stand for numbers; give `values`, or `color_by` \
-                 with the name of a column of numbers"
-                    .to_owned(),
-            ));
-        }
-        compose::choose(&request, &mut staged)?;
-        if let Some(sections) = &request.sections {
-            sections.append_bodies(&mut staged, count);
-        }
-        compose::light_ahead(&request, &mut staged)?;
-        if let Some(sections) = &request.sections {
+        let particles = match survey {
+            None => of_frame_in(path, frame, options, self.first_frame.take())?,
+            Some(survey) => {
+                survey.add_first(path, &frame, options, request.style.arrows.as_ref());
+                survey.particles(path, frame, options)?
+            }
+        };
+        Ok((title, particles))
+    }
+
+    /// The finished scene, with the warnings of its sections.
+    fn numbered(&self, mut staged: Staged) -> Numbered {
+        if let Some(sections) = &self.request.sections {
             staged.scene.warnings.extend(sections.scene.warnings.iter().cloned());
         }
-        Ok(Numbered { scene: staged.scene, rows: staged.rows, first_frame: staged.first_frame })
+        Numbered { scene: staged.scene, rows: staged.rows, first_frame: staged.first_frame }
     }
 
     /// Returns whether spheres may get other rows than their particles.
@@ -504,6 +565,33 @@ impl Work {
                 || !style.polyhedra.is_empty());
         let drops = style.select.is_some() || !style.styles.is_empty();
         drops || copies.is_some() || scaled || has_images
+    }
+}
+
+/// Composes the scene of particles. Colors that a bar is asked for stand for numbers.
+fn stage(
+    request: &Request,
+    title: &str,
+    particles: Particles,
+    shared: Option<&Shared>,
+) -> Result<Staged, Fault> {
+    let content = Content::Particles(Box::new(particles));
+    let staged = compose::stage(request, &subject(title), content, shared)?;
+    let is_empty = request.style.allow_empty && staged.scene.is_empty();
+    if request.annotations.color_bar.is_some() && staged.legend.is_none() && !is_empty {
+        return Err(Fault::Text(
+            "`color_bar` needs colors that stand for numbers; give `values`, or `color_by` with the \
+             name of a column of numbers"
+                .to_owned(),
+        ));
+    }
+    Ok(staged)
+}
+
+/// Appends the bodies of sections to those of `count` particles.
+fn append_bodies(request: &Request, staged: &mut Staged, count: usize) {
+    if let Some(sections) = &request.sections {
+        sections.append_bodies(staged, count);
     }
 }
 

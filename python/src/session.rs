@@ -1,6 +1,6 @@
 //! Renders: from a scene to pictures, in one step or refined step by step.
 
-use crate::encode::Matte;
+use crate::encode::{Drawn, Matte};
 use crate::errors::error;
 use crate::pools::pool;
 use crate::scene::{Fault, Scene, SharedScene};
@@ -116,6 +116,8 @@ pub(crate) struct Shown {
     title: String,
     settings: Settings,
     matte: Option<spherule::overlay::Matte>,
+    /// The annotations, if there are any.
+    drawn: Option<Drawn>,
     /// The error of the picture, before and after denoising.
     judged: Option<(Noise, Noise)>,
     denoised: bool,
@@ -261,12 +263,13 @@ impl Session {
             &mut render,
             cancel,
         )?;
+        let mut drawn = None;
         if !self.annotations.is_empty() {
             let resolution = self.settings.dpi;
-            let drawn =
+            let made =
                 annotations::draw(&self.annotations, &self.world, &self.look, resolution, false);
-            canvas.draw(|image| drawn.drawing.draw_over(image));
-            if !drawn.fits {
+            drawn = Some(Drawn::over(&mut canvas, made.drawing));
+            if !made.fits {
                 warnings.push(
                     "annotations overlap: make the picture larger, or use fewer or a smaller \
                      `lettering`"
@@ -282,6 +285,7 @@ impl Session {
             title,
             settings,
             matte,
+            drawn,
             judged: errors,
             denoised: is_denoised,
             finished,
@@ -326,11 +330,12 @@ impl Session {
 impl Shown {
     /// The picture as a table for the class `Picture`.
     fn table(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
-        let Self { render, title, settings, matte, judged, denoised, warnings, .. } = self;
+        let Self { render, title, settings, matte, drawn, judged, denoised, warnings, .. } = self;
         let (named, mut layers) = (self.named, self.layers);
         let Settings { width, height, .. } = settings;
         let size = (height as usize, width as usize);
         let table = PyDict::new(py);
+        table.set_item("sampled", render.sampled_share())?;
         let pixels = match &matte {
             None => PyArray1::from_vec(py, render.image.pixels.into_flattened())
                 .reshape([size.0, size.1, 3])?,
@@ -343,6 +348,7 @@ impl Shown {
         };
         table.set_item("pixels", pixels)?;
         table.set_item("matte", matte.map(Matte::of))?;
+        table.set_item("drawn", drawn)?;
         table.set_item("title", title)?;
         table.set_item("dpi", settings.dpi.map(NonZeroU16::get))?;
         table.set_item("exposure", settings.exposure)?;
@@ -421,9 +427,10 @@ pub(crate) fn show(
     }
 }
 
-/// Renders a scene; of one that is `taken` the spheres are gone afterwards.
+/// Renders a scene; of one that is `taken` the spheres are gone afterwards. Frames of a movie that are scenes have the number of
+/// samples of the first one, which has `first_frame` particles.
 #[pyfunction]
-#[pyo3(signature = (scene, table, taken, stop, report))]
+#[pyo3(signature = (scene, table, taken, stop, report, first_frame=None))]
 pub(crate) fn render<'py>(
     py: Python<'py>,
     scene: &Scene,
@@ -431,9 +438,11 @@ pub(crate) fn render<'py>(
     taken: bool,
     stop: Option<&Stop>,
     report: Option<Bound<'py, PyAny>>,
+    first_frame: Option<usize>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (request, pool) = table.request(py)?;
-    let scene = scene.share();
+    let mut scene = scene.share();
+    scene.first_frame = scene.first_frame.or(first_frame);
     let work = move |shared: &Shared| {
         let mut session = Session::begin(&pool, &scene, request, taken, None)?;
         pool.install(|| {

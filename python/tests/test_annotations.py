@@ -1,6 +1,9 @@
 """Annotations by a word, particles of other packages taken as they are, and what completion shows."""
 
 import inspect
+import pickle
+import re
+import traceback
 
 import numpy as np
 import pytest
@@ -107,3 +110,48 @@ def test_bonds_that_a_style_draws_are_read(tmp_path):
     for wrong in ({"element H": {"colour": "red"}}, ["element H"], {"element H": 3}, {"element N": "color=red"}):
         with pytest.raises(spherule.Error):
             spherule.render(path, styles=wrong, size=(40, 30), spp=1)
+
+
+@pytest.mark.parametrize("background", ["white", "transparent"])
+def test_pages_have_annotations_as_vectors(tmp_path, background):
+    camera = {"eye": [1.5, 0, 20], "target": [1.5, 0, 0]}
+    options = {"radius": [1, 2], "size": (200, 150), "spp": 1, "background": background, "camera": camera}
+    plain = spherule.render([[0, 0, 0], [3, 0, 0]], **options)
+    picture = spherule.render([[0, 0, 0], [3, 0, 0]], label="top:argon", **options)
+    pages = [one.encode("svg").decode() for one in (picture, plain)]
+    assert [">argon<" in page for page in pages] == [True, False]
+    # The picture on the page has no letters.
+    mine, theirs = (re.search(r'base64,([^"]*)"', page)[1] for page in pages)
+    assert mine == theirs and picture.encode() != plain.encode()
+    picture.save(tmp_path / "a.pdf")
+    assert (tmp_path / "a.pdf").read_bytes().startswith(b"%PDF-")
+    # What is cut has them as pixels.
+    picture.pixels = picture.pixels[:100]
+    if background == "white":
+        assert ">argon<" not in picture.encode("svg").decode()
+        assert ">argon<" not in pickle.loads(pickle.dumps(picture)).encode("svg").decode()
+
+
+def test_errors_are_raised_from_the_call():
+    """A traceback has the user's line and the one that raises; nothing of what is in between."""
+    calls = [
+        lambda: spherule.render(POINTS, radius=-1),
+        lambda: spherule.Scene(POINTS, camera={"fov": 200}),
+        lambda: spherule.Scene.load("nope.xyz"),
+        lambda: spherule.read("nope.xyz"),
+        lambda: spherule.render(POINTS, colour="red"),
+        lambda: spherule.movie([POINTS], "a-%d.png", radius="x"),
+    ]
+    for call in calls:
+        with pytest.raises((spherule.Error, TypeError)) as caught:
+            call()
+        frames = traceback.extract_tb(caught.tb)
+        assert len(frames) == 3 and frames[2].name == "call", frames
+        assert type(caught.value).__module__ == "spherule" and caught.value.__suppress_context__
+
+
+def test_warnings_are_of_the_line_of_the_call():
+    for call in (lambda: spherule.render(POINTS, size=(8, 6), spp=1), lambda: spherule.Scene(POINTS)):
+        with pytest.warns(spherule.SpheruleWarning) as caught:
+            call()
+        assert {one.filename for one in caught} == {__file__}

@@ -27,7 +27,7 @@ def test_the_examples_of_the_manual_run(tmp_path, monkeypatch):
         )
     )
     blocks = re.findall(r"```python\n(.*?)```", MANUAL.read_text(), re.S)
-    assert len(blocks) == 7
+    assert len(blocks) == 8
     rng = np.random.default_rng(4)
     names = {"origins": rng.random((9, 3)), "directions": rng.normal(size=(9, 3))}
     for block in blocks:

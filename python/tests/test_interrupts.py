@@ -57,6 +57,38 @@ def test_interrupts_return_the_picture_so_far():
     assert statistics.median(times) < 0.1, times
 
 
+FIRST_PASS = """
+    import warnings
+    import numpy as np
+    import spherule
+
+    def report(done, rays, seconds, error):
+        # A second interrupt would not wait for the picture.
+        if not told:
+            told.append(done)
+            raise KeyboardInterrupt
+
+    told = []
+    # Thousands of tiles, of which few have a sample by the first report.
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        picture = spherule.render(
+            [[0, 0, 0]], radius=1, size=(4000, 3000), spp=4096, denoise="off", progress=report, threads=1,
+            background="#ff8000", zoom=4,
+        )
+    codes = picture.srgb()
+    without = (codes == [255, 128, 0]).all(axis=2).mean()
+    print(0 < picture.sampled < 1, abs(without - (1 - picture.sampled)) < 0.01, "sampled" in str(caught[-1].message))
+"""
+
+
+def test_pictures_without_samples_show_the_background():
+    run = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(FIRST_PASS)], check=True, capture_output=True, text=True, timeout=60
+    )
+    assert run.stdout == "True True True\n"
+
+
 def test_interrupts_are_raised_if_asked_for():
     line, _ = interrupted(0.6, options='on_interrupt="raise"')
     assert line == "raised False True"

@@ -13,11 +13,12 @@ use spherule_render::render::RenderError;
 use spherule_render::scene::generate::GenerateError;
 use spherule_render::scene::{FileError, Place};
 use spherule_render::split::MergeError;
+use spherule_render::video::{self, VideoError};
 use spherule_render::world::WorldError;
 use std::fmt::Display;
 use std::io;
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Maximum number of bytes of an excerpt. A damaged file may be a single line.
@@ -110,6 +111,25 @@ impl Failure {
     /// Creates an error for options that contradict each other.
     pub(super) fn usage(command: &str, message: impl Display) -> Self {
         Self::Usage { command: command.to_owned(), message: message.to_string() }
+    }
+
+    /// Creates the error of a video of so many images per second.
+    pub(super) fn video(path: &Path, fps: Option<f64>, error: VideoError) -> Self {
+        let message = match error {
+            VideoError::Write(error) => return Self::Write(path.to_owned(), error),
+            VideoError::Missing(_) => {
+                let video = path.file_name().unwrap_or_default().to_string_lossy();
+                let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+                let fps = fps.unwrap_or(video::FPS);
+                format!(
+                    "{error}, or write numbered images with -o {stem}-%04d.png and encode the video elsewhere:\n  \
+                     ffmpeg -framerate {fps} -pattern_type glob -i '{stem}-*.png' -vf \
+                     'pad=ceil(iw/2)*2:ceil(ih/2)*2' -pix_fmt yuv420p {video}"
+                )
+            }
+            other => other.to_string(),
+        };
+        Self::Video(path.to_owned(), message)
     }
 
     /// Adds the number of a trajectory frame to the error.

@@ -1,4 +1,4 @@
-//! Pictures of Spherule: colors and color maps, image files and tone curves, and drawing with letters and lines.
+//! Pictures of Spherule: colors and color maps, image files, videos and tone curves, and drawing with letters and lines.
 //!
 //! This is a part of the crate `spherule`, which has the public interface: use that. Anything here may change in any release.
 
@@ -15,5 +15,6 @@ pub mod graphics;
 
 pub mod atomic;
 pub mod image;
+pub mod video;
 
 pub use image::Image;

@@ -26,7 +26,7 @@ pub use spherule_particles::internals::{memory, suggest};
 // What users write, and images.
 #[cfg(feature = "drawing")]
 pub use spherule_image::graphics;
-pub use spherule_image::{Image, atomic, color, image};
+pub use spherule_image::{Image, atomic, color, image, video};
 pub use spherule_scene::{Scene, scene, settings};
 
 // Paths of light.

@@ -13,6 +13,7 @@ use spherule_render::scene::particles::{
 };
 use spherule_render::scene::{Anchor, Rgb};
 use spherule_render::suggest;
+use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -37,9 +38,9 @@ pub(in crate::cli) struct AppearanceArgs {
     /// different integers of labels such as cluster, coordination or mol. Names of other programs are accepted, as for --select
     #[arg(long, value_name = "EXPR", allow_hyphen_values = true)]
     color_by: Option<String>,
-    /// Color map for --color-by; append _r to reverse it, as in `viridis_r`; or categories, a color for each integer, of which
-    /// there are thirty [default: viridis, or categories for at most 12 different integers of labels]
-    #[arg(long, value_name = "MAP", requires = "color_by", value_parser = map())]
+    /// Color map for --color-by; append _r to reverse it, as in `viridis_r`; or evenly spaced colors, as in
+    /// navy,white,firebrick; or categories, a color for each integer, of which there are thirty [default: viridis, or categories for at most 12 different integers of labels]
+    #[arg(long, value_name = "MAP", requires = "color_by", value_parser = MapParser)]
     color_map: Option<MapChoice>,
     /// Values at the ends of the color map; values outside get the colors of the ends, and arrows in the color bar. An end
     /// is a number, a percentile of the values as in 2%,98%, or auto [default: auto, the minimum and the maximum; in a
@@ -213,11 +214,40 @@ enum MapChoice {
     Map { map: Map, reversed: bool },
 }
 
-fn map() -> impl TypedValueParser<Value = MapChoice> {
+/// A parser of the names of color maps, and of colors with commas between them.
+#[derive(Clone)]
+struct MapParser;
+
+impl TypedValueParser for MapParser {
+    type Value = MapChoice;
+
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        option: Option<&clap::Arg>,
+        value: &OsStr,
+    ) -> Result<MapChoice, clap::Error> {
+        let colors = |text: &str| text.parse().map(|map| MapChoice::Map { map, reversed: false });
+        match value.to_str().filter(|text| text.contains(',')) {
+            Some(_) => colors.parse_ref(command, option, value),
+            None => named_map().parse_ref(command, option, value),
+        }
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(map_names()))
+    }
+}
+
+/// Returns the names of color maps.
+fn map_names() -> impl Iterator<Item = PossibleValue> {
     let names = Map::ALL.map(|map| PossibleValue::new(map.name()));
     let reversed = REVERSED.map(|name| PossibleValue::new(name).hide(true));
-    let names = names.into_iter().chain([PossibleValue::new(CATEGORIES)]).chain(reversed);
-    PossibleValuesParser::new(names).try_map(|name| {
+    names.into_iter().chain([PossibleValue::new(CATEGORIES)]).chain(reversed)
+}
+
+fn named_map() -> impl TypedValueParser<Value = MapChoice> {
+    PossibleValuesParser::new(map_names()).try_map(|name| {
         if name == CATEGORIES {
             return Ok(MapChoice::Categories);
         }

@@ -9,7 +9,6 @@ use super::prepare::{PlacedScene, Prepared};
 use super::setup::RenderSetup;
 use super::summary::Summary;
 use super::terminal::Terminal;
-use super::video::Video;
 use super::{existing, layers, metadata, page, part};
 use crate::cli::failure::Failure;
 use crate::cli::progress::Meter;
@@ -20,6 +19,7 @@ use spherule_render::film::Film;
 use spherule_render::overlay::{Canvas, Matte};
 use spherule_render::render::{End, Judge, Options, Render, RenderError, ResumableRender};
 use spherule_render::scene::Scene;
+use spherule_render::video::Video;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -140,7 +140,8 @@ fn write(
     let mut channels = layers::channels(setup, prepared, render)?;
     channels.extend(matte.map(|matte| layers::alpha(&matte, setup.format)));
     if let Some(video) = &mut session.video {
-        video.add(&render.image, &options)?;
+        let added = video.add(&render.image, &options);
+        added.map_err(|error| Failure::video(&setup.output, None, error))?;
     } else {
         let file = render.image.encode(setup.format, &channels, &options)?;
         write_file(&setup.output, &page::file(setup, prepared, file, &options)?)?;
@@ -243,11 +244,24 @@ impl Traced {
     /// Warns of an incomplete image.
     fn report(&self, setup: &RenderSetup, prepared: &Prepared, render: &Render) {
         let output = setup.output.display();
+        let share = render.sampled_share();
+        let gaps = if share < 1.0 {
+            format!(
+                ": {:.1} % of its pixels are sampled, the others show the background",
+                100.0 * share
+            )
+        } else {
+            String::new()
+        };
         if !render.complete && prepared.scene.settings.has_target() {
-            output::warn(format_args!("interrupted: {output} is incomplete"));
+            output::warn(format_args!("interrupted: {output} is incomplete{gaps}"));
         } else if !render.complete {
             let percent = 100.0 * prepared.taken(render);
-            output::warn(format_args!("interrupted: {output} has {percent:.1} % of the samples"));
+            output::warn(format_args!(
+                "interrupted: {output} has {percent:.1} % of the samples{gaps}"
+            ));
+        } else if share < 1.0 {
+            output::warn(format_args!("{output} is incomplete{gaps}"));
         }
         if matches!(render.end, End::Cancelled | End::Time) {
             self.advise(setup);

@@ -22,7 +22,6 @@ mod sequence;
 mod setup;
 mod summary;
 mod terminal;
-mod video;
 mod visibility;
 
 pub(super) use self::appearance::{check_bar, check_legend, draw_annotations, write_bar};

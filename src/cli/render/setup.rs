@@ -1,7 +1,6 @@
 //! The setup of a render: scene, settings and output, validated as far as possible without the scene.
 
 use super::args::RenderArgs;
-use super::video::Container;
 use crate::cli::options::annotations::AnnotationArgs;
 use crate::cli::options::appearance::{AppearanceArgs, BarPlace};
 
@@ -28,6 +27,7 @@ use spherule_render::scene::particles::{ParticleStyle, TypeStyle};
 use spherule_render::scene::{Background, Preset, Settings};
 use spherule_render::split::{Part, Split};
 use spherule_render::trace::Tracer;
+use spherule_render::video::Container;
 use std::path::PathBuf;
 
 /// Place of an image in a sequence.

@@ -1,7 +1,10 @@
 //! Color maps: from 0..=1 to colors.
 
+use super::custom_map::CustomMap;
 use super::tables::{CIVIDIS, COOLWARM, INFERNO, MAGMA, PLASMA, ROWS, TURBO, Table, VIRIDIS};
 use super::{Rgb, srgb};
+use crate::suggest;
+use std::str::FromStr;
 
 /// A published color map. All except [`Map::Turbo`] are perceptually uniform.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -22,10 +25,12 @@ pub enum Map {
     Turbo,
     /// Blue over gray to red, for data with a midpoint.
     Coolwarm,
+    /// Evenly spaced colors of one's own.
+    Custom(CustomMap),
 }
 
 impl Map {
-    /// All maps.
+    /// All published maps.
     pub const ALL: [Self; 7] = [
         Self::Viridis,
         Self::Cividis,
@@ -36,7 +41,7 @@ impl Map {
         Self::Coolwarm,
     ];
 
-    /// Returns the published name, in lower case.
+    /// Returns the published name, in lower case, or the colors of a map of one's own.
     pub fn name(self) -> &'static str {
         match self {
             Self::Viridis => "viridis",
@@ -46,12 +51,13 @@ impl Map {
             Self::Plasma => "plasma",
             Self::Turbo => "turbo",
             Self::Coolwarm => "coolwarm",
+            Self::Custom(own) => own.text(),
         }
     }
 
-    /// Returns the map with this name, in any case.
+    /// Returns the map with this name, in any case, or of colors with commas between them.
     pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|map| map.name().eq_ignore_ascii_case(name))
+        name.parse().ok()
     }
 
     /// Returns the linear color at `position`: 0 is the low end, 1 the high end; positions outside are
@@ -75,7 +81,24 @@ impl Map {
             Self::Plasma => &PLASMA,
             Self::Turbo => &TURBO,
             Self::Coolwarm => &COOLWARM,
+            Self::Custom(own) => own.table(),
         }
+    }
+}
+
+impl FromStr for Map {
+    type Err = String;
+
+    /// Parses the name of a published map, in any case, or colors with commas between them, as in `navy,white,firebrick`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text.contains(',') {
+            return CustomMap::of_colors(text).map(Self::Custom);
+        }
+        let found = Self::ALL.into_iter().find(|map| map.name().eq_ignore_ascii_case(text));
+        found.ok_or_else(|| {
+            let help = suggest::help(text, Self::ALL.into_iter().map(Self::name), "maps are");
+            format!("unknown color map `{text}`; {help}, or colors as in navy,white,firebrick")
+        })
     }
 }
 

@@ -5,6 +5,7 @@
 //! range, for a color bar.
 
 mod categories;
+mod custom_map;
 pub mod elements;
 mod map;
 mod names;
@@ -15,6 +16,7 @@ mod tables;
 mod ticks;
 
 pub use categories::{CATEGORIES, category};
+pub use custom_map::CustomMap;
 pub use map::Map;
 pub use names::{names, of_name, parse};
 pub use percentile::percentile;

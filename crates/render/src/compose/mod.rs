@@ -14,6 +14,7 @@
 mod annotations;
 mod camera;
 mod sections;
+mod survey;
 mod template;
 
 pub use self::annotations::{AnnotationRequest, Axes, Bar, LabelText, ink, notes, position};
@@ -22,6 +23,7 @@ pub use self::camera::{
     light_ahead, place, vertical, zoom,
 };
 pub use self::sections::{Sections, change};
+pub use self::survey::Survey;
 pub use self::template::{Template, Value};
 
 use self::annotations::Facts;

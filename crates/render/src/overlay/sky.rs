@@ -1,17 +1,50 @@
 //! Depth cue, and the environment that the camera sees.
 
-use super::{Overlay, PIXELS};
+use super::{Matte, Overlay, PIXELS};
+use crate::film::Region;
 use crate::image::Image;
+use crate::render::Render;
+use crate::world::World;
 use rayon::prelude::*;
 
+/// Returns the environment's radiance at the center of a pixel of the picture.
+fn sky(world: &World, x: u32, y: u32) -> [f32; 3] {
+    let position = [x, y].map(|place| f64::from(place) + 0.5);
+    let (_, direction) = world.camera.rays::<f64>(position, None);
+    let toward = glam::DVec3::new(direction.x, direction.y, direction.z).as_vec3();
+    world.environment.radiance(toward).to_array()
+}
+
+/// Gives the pixels of a render that have no sample the background that the camera sees. `region` is that of the image.
+pub(super) fn fill_unsampled(world: &World, region: Region, render: &mut Render) {
+    let background = world.environment.background.map(|color| color.to_array());
+    let Render { image, unsampled, .. } = render;
+    for (x, y) in unsampled.iter().flat_map(|tile| tile.morton()) {
+        image.pixels[row_of(region, x, y)] = background.unwrap_or_else(|| sky(world, x, y));
+    }
+}
+
+/// Makes the pixels of a picture that have no sample transparent.
+pub(super) fn clear_unsampled(region: Region, render: &mut Render, matte: &mut Matte) {
+    let Render { image, unsampled, .. } = render;
+    for (x, y) in unsampled.iter().flat_map(|tile| tile.morton()) {
+        let at = row_of(region, x, y);
+        (image.pixels[at], matte.coverage[at]) = ([0.0; 3], 0.0);
+        if let Some(shadow) = matte.shadow.get_mut(at) {
+            *shadow = 0.0;
+        }
+    }
+}
+
+/// Returns the row of a pixel of the picture among those of a region.
+fn row_of(region: Region, x: u32, y: u32) -> usize {
+    (y - region.y) as usize * region.width as usize + (x - region.x) as usize
+}
+
 impl Overlay<'_> {
-    /// Returns the environment's radiance at the center of a pixel.
+    /// Returns the environment's radiance at the center of a pixel of the region.
     pub(super) fn sky(&self, x: usize, y: usize) -> [f32; 3] {
-        let at = |first: u32, offset: usize| f64::from(first) + offset as f64 + 0.5;
-        let position = [at(self.region.x, x), at(self.region.y, y)];
-        let (_, direction) = self.world.camera.rays::<f64>(position, None);
-        let toward = glam::DVec3::new(direction.x, direction.y, direction.z).as_vec3();
-        self.world.environment.radiance(toward).to_array()
+        sky(self.world, self.region.x + x as u32, self.region.y + y as u32)
     }
 
     /// Blends distant objects with a color: from 0 at the nearest sphere to `most` (0..=1) at the end
@@ -33,7 +66,6 @@ impl Overlay<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::Region;
     use crate::layers::{Features, Layer, Layers, layers};
     use crate::overlay::depths;
     use crate::render::{Options, render};

@@ -125,6 +125,16 @@ pub struct Render {
     pub stop_conditions: Vec<StopCondition>,
     /// True if all samples were taken: otherwise the render was cancelled.
     pub complete: bool,
+    /// Tiles without a sample, which are black, as regions of the picture: those of a render that ended in its first pass.
+    pub unsampled: Vec<Region>,
+}
+
+impl Render {
+    /// Returns the fraction of pixels that have samples.
+    pub fn sampled_share(&self) -> f64 {
+        let without: u64 = self.unsampled.iter().map(|region| region.area()).sum();
+        1.0 - without as f64 / self.image.pixels.len() as f64
+    }
 }
 
 /// Numbers of samples of an image.

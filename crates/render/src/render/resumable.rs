@@ -208,7 +208,14 @@ impl ResumableRender {
             end: self.end,
             stop_conditions: self.stop_conditions.clone(),
             complete: self.is_complete(),
+            unsampled: self.unsampled(),
         }
+    }
+
+    /// Returns the tiles without a sample.
+    fn unsampled(&self) -> Vec<Region> {
+        let tiles = self.state.film.tiles.iter();
+        tiles.filter(|tile| tile.samples == 0).map(|tile| tile.region).collect()
     }
 
     /// Returns the part of the image to render.

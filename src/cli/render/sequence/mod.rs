@@ -1,24 +1,21 @@
 //! Image sequences: of trajectory frames, of a turntable, or of both.
 //!
 //! Properties that depend on all frames, such as the camera and the color range, are the same in all images:
-//! see [`survey`]. A file is read twice for that, standard input once.
+//! see [`Survey`]. A file is read twice for that, standard input once.
 
 mod frame_reader;
 mod numbered_names;
 mod plan;
-mod survey;
 
 use self::frame_reader::FrameReader;
 use self::numbered_names::numbered;
 use self::plan::{Frames, Plan, Shot, stream_name};
-use self::survey::Survey;
 use super::checkpoint::resume::Resumed;
 use super::checkpoint::writer::CheckpointWriter;
 use super::image::{Session, render_placed};
 use super::pace::Pace;
-use super::prepare::PlacedScene;
+use super::prepare::{PlacedScene, stage};
 use super::setup::{Common, Place, RenderSetup};
-use super::video::Video;
 use crate::cli::contents::plural;
 use crate::cli::failure::Failure;
 use crate::cli::files::Files;
@@ -26,8 +23,10 @@ use crate::cli::options::appearance::BarPlace;
 use crate::cli::output;
 use crate::cli::picture_file;
 use crate::cli::source::Source;
+use spherule_render::compose::Survey;
 use spherule_render::scene::particles::{Particles, ReadOptions, TrajectoryReader};
 use spherule_render::split::Part;
+use spherule_render::video::Video;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -104,7 +103,9 @@ fn check_outputs(
 ) -> Result<Option<Video>, Failure> {
     if let Some(container) = setup.video {
         files.check_output("--output", &setup.output)?;
-        return Video::new(&setup.output, container, setup.sequence.fps).map(Some);
+        let (path, fps) = (&setup.output, setup.sequence.fps);
+        let video = Video::new(path, container, fps);
+        return video.map(Some).map_err(|error| Failure::video(path, fps, error));
     }
     let known = (0..plan.count().unwrap_or(1)).filter(|&index| is_assigned(setup, index));
     let mut files = files.clone();
@@ -139,11 +140,15 @@ fn survey_frames(
     reader: &mut FrameReader,
 ) -> Result<Survey, Failure> {
     let trajectory = trajectory(setup, plan, path, options, reader)?;
-    let mut survey = Survey::new(!plan.is_stream(), trajectory);
+    let mut survey = Survey::new(trajectory);
     let add = |survey: &mut Survey, number: u64, frame| {
         let particles = survey.particles(path, frame, options)?;
-        let setup = RenderSetup { frame: Some(number), ..setup.clone() };
-        survey.add(&setup, particles).map_err(|error| error.of_frame(number))
+        let request = survey.begin_frame(&setup.request, &particles);
+        let sized = RenderSetup { frame: Some(number), request, ..setup.clone() };
+        let added = stage(&sized, Some(particles)).and_then(|staged| {
+            survey.add(&setup.request, staged).map_err(|fault| setup.refuse(fault))
+        });
+        added.map_err(|error| error.of_frame(number))
     };
     if plan.count().is_none() {
         if let Some(number) = plan.shot(0).and_then(|shot| shot.frame)
@@ -276,7 +281,10 @@ impl Sequence<'_> {
             let angle = shot.turn.map(|turn| self.setup.views.angle(turn));
             let result = survey.particles(path, frame, options).map_err(Failure::from);
             let result = result.and_then(|particles| {
-                let common = survey.common(&self.setup, angle)?;
+                let shared = survey.shared(&self.setup.request, angle).map_err(|error| {
+                    Failure::World(self.setup.source.name().into_owned(), error)
+                })?;
+                let common = Common { shared, frames_all: !self.plan.is_stream() };
                 self.picture(index, &shot, Some(particles), Some(common))
             });
             let code = result.map_err(|error| error.of_frame(number))?;
@@ -351,7 +359,8 @@ impl Sequence<'_> {
             ));
         }
         if let Some(video) = video {
-            let summary = video.finish()?;
+            let summary =
+                video.finish().map_err(|error| Failure::video(&self.setup.output, None, error))?;
             if !self.setup.report.quiet {
                 output::print(summary);
             }

@@ -2,6 +2,7 @@
 
 use super::super::file::value::Value;
 use super::super::write::sections::quoted;
+use crate::color::Map;
 use crate::scene::{Background, FileError, LetterSize, Rgb};
 use crate::settings::Limits;
 use glam::{DQuat, DVec3};
@@ -259,6 +260,27 @@ impl<T: Clone + Debug + PartialEq> Kind<T> for Word<'_, T> {
 
     fn words(&self) -> Words {
         one_of(self.0.iter().map(|(word, _)| *word))
+    }
+}
+
+/// A color map: its name, or colors.
+pub(super) struct MapName;
+
+impl Kind<Map> for MapName {
+    fn read(&self, value: &Value) -> Result<Map, FileError> {
+        value.text()?.parse().map_err(|why: String| value.error(why))
+    }
+
+    fn text(&self, value: &Map) -> Option<String> {
+        Some(quoted(value.name()))
+    }
+
+    fn words(&self) -> Words {
+        let Words { range, python, .. } = one_of(Map::ALL.into_iter().map(Map::name));
+        Words::new(
+            format!("{range}, or colors as in `\"navy,white,firebrick\"`"),
+            format!("{python} | str"),
+        )
     }
 }
 

@@ -3,7 +3,7 @@
 
 use super::kinds::Str::{Name, Path, Text};
 use super::kinds::Triple::{Direction, Point, Vector};
-use super::kinds::{Backdrop, Entries, Flag, Letters, List, Optional, Whole, Word};
+use super::kinds::{Backdrop, Entries, Flag, Letters, List, MapName, Optional, Whole, Word};
 use super::{Schema, Section, Visitor, key};
 use crate::color::{Map, Range, Scale, Spacing};
 use crate::image::Image;
@@ -235,7 +235,7 @@ impl Section for ColorBar {
             Ok(own) => *range = own,
             Err(error) => keys.refuse(&["range"], &error.to_string(), None),
         }
-        keys.visit(key("map", "the color map"), Word(&Map::ALL.map(|map| (map.name(), map))), map);
+        keys.visit(key("map", "the color map"), MapName, map);
         keys.visit(key("reversed", "reverse the color map"), Flag, reversed);
         let help = "label; in `v_x` and `m^2`, and in `v_{max}`, what follows a mark is a subscript or superscript";
         keys.visit(key("label", help), Text, label);

@@ -67,6 +67,16 @@ pub struct TrajectoryReader {
 }
 
 impl TrajectoryReader {
+    /// Creates a reader of frames that have these choices in common.
+    pub fn of_first(first_frame: Option<FirstFrame>) -> Self {
+        Self { names: SharedNames::default(), first_frame }
+    }
+
+    /// Returns the choices that the frames have in common, once they are known.
+    pub fn first_frame(&self) -> Option<&FirstFrame> {
+        self.first_frame.as_ref()
+    }
+
     /// Reads the spheres of the frame that the options select; `arrows` are those that are asked for.
     ///
     /// # Errors
