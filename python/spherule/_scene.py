@@ -75,7 +75,7 @@ class Scene:
         styles: Styles of selections, of which later ones win: ``{"resname ATP": {"model": "ball-and-stick", "color":
             "magenta"}}``, or texts such as ``"chain A: opacity=0.3"``. Properties are ``model``, ``color`` (a color,
             ``"element"``, or a column or an expression, with ``map``, ``range`` and ``log``), ``radius``, ``scale``,
-            ``bonds``, ``bond_radius``, ``opacity``, ``material`` and ``visible``.
+            ``bonds``, ``bond_radius``, ``opacity``, ``polyhedra`` with ``polyhedra_opacity``, ``material`` and ``visible``.
         translucent: Draw only particles for which this is true with ``opacity`` (0.2 if that is not given).
         select: Draw only particles for which this is true, as in ``"element != H and z > 10"``.
         radius_scale: A factor on all radii.
@@ -471,6 +471,8 @@ def _selected(select: str, look: Any) -> tuple[str, tuple[float, ...] | None]:
             value = _matplotlib.map_words(at, value)
         elif isinstance(value, bool):
             value = "yes" if value else "no"
+        elif key == "polyhedra" and isinstance(value, (tuple, list)):
+            value = ",".join(_values.items(at, value, _values.text))
         elif isinstance(value, (tuple, list)):
             value = _numbers(at, value)
         elif not isinstance(value, str):

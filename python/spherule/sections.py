@@ -335,6 +335,8 @@ class Style(_Style, total=False):
     bonds: bool
     bond_radius: float
     opacity: float
+    polyhedra: str
+    polyhedra_opacity: float
     material: Literal["lambertian", "plastic", "metal", "glass", "mirror", "emitter"]
     visible: bool
 

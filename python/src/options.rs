@@ -146,6 +146,7 @@ impl ParticleTable<'_> {
                 name: name.clone(),
                 element: element.as_deref().and_then(Element::from_symbol),
                 virtual_site: self.virtual_sites.get(row).copied().unwrap_or(false),
+                ..Kind::default()
             };
             let table = names.iter().zip(&self.elements).enumerate().map(kind).collect();
             frame.kinds = Kinds { table, codes: codes_of(py, "kinds", names, codes, count)? };

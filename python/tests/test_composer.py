@@ -62,6 +62,10 @@ GROUPS = [
             {"styles": {"all": {"color": "tags + z", "map": "magma", "range": (0, 9)}}},
             ["--style", "all: color=tags + z map=magma range=0,9"],
         ),
+        (
+            {"styles": {"element Ni": {"polyhedra": ["Ni-Cu<3", "Ni-Ni<3"], "polyhedra_opacity": 0.4, "color": "teal"}}},
+            ["--style", "element Ni: color=teal polyhedra=Ni-Cu<3,Ni-Ni<3 polyhedra-opacity=0.4"],
+        ),
         ({"styles": {"element Cu": "radius=2"}}, ["--style", "element Cu: radius=2"]),
     ],
     [({"hide": "element O"}, ["--hide", "element O"])],

@@ -25,9 +25,9 @@ const SHOWN: usize = 8;
 pub enum Container {
     /// MPEG-4.
     Mp4,
-    /// QuickTime.
+    /// `QuickTime`.
     Mov,
-    /// WebM.
+    /// `WebM`.
     Webm,
     /// An animated GIF, with a palette of its own.
     Gif,
@@ -147,7 +147,7 @@ impl Video {
         let size = (image.width.next_multiple_of(2), image.height.next_multiple_of(2));
         if self.encoder.is_none() {
             let started = Encoder::start(&self.path, self.container, self.fps, size);
-            self.encoder = Some(started.map_err(of_encoder)?);
+            self.encoder = Some(started.map_err(|error| of_encoder(&error))?);
         }
         let Some(encoder) = &mut self.encoder else { return Ok(()) };
         if encoder.size != size {
@@ -178,7 +178,7 @@ impl Video {
         let Some(mut encoder) = self.encoder.take() else {
             return Err(VideoError::Encoder("it has no images".to_owned()));
         };
-        let (status, messages) = encoder.end().map_err(of_encoder)?;
+        let (status, messages) = encoder.end().map_err(|error| of_encoder(&error))?;
         if !status.success() {
             return Err(VideoError::Encoder(failed(status, &messages)));
         }
@@ -194,7 +194,7 @@ impl Video {
 }
 
 /// The error of an encoder that cannot be started or awaited.
-fn of_encoder(error: io::Error) -> VideoError {
+fn of_encoder(error: &io::Error) -> VideoError {
     VideoError::Encoder(error.to_string())
 }
 

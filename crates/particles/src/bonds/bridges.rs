@@ -3,6 +3,7 @@
 
 use super::Bonds;
 use super::components::{Adjacency, Near};
+use super::rules::TOLERANCE;
 use crate::{Element, ParticleFrame};
 use rayon::prelude::*;
 
@@ -29,11 +30,22 @@ const CARBON: f64 = 2.55;
 /// Elements that are neither metals nor anions. Silicon, germanium and antimony are cations beside anions, as metals are.
 const NONMETALS: [&str; 10] = ["He", "B", "C", "Ne", "Ar", "Kr", "Xe", "At", "Rn", "Og"];
 
+/// Metals whose hydrides are of ions.
+const ALKALI: [&str; 6] = ["Li", "Na", "K", "Rb", "Cs", "Fr"];
+
+/// Returns whether an element is an alkali metal.
+pub(super) fn is_alkali(element: Element) -> bool {
+    ALKALI.contains(&element.symbol())
+}
+
 /// The role of the atoms of a type.
 #[derive(Clone, Copy, Default)]
+#[allow(clippy::struct_excessive_bools, reason = "facts that do not exclude each other")]
 struct Species {
     is_metal: bool,
     is_anion: bool,
+    is_hydrogen: bool,
+    is_alkali: bool,
     electronegativity: f64,
     covalent_radius: f64,
 }
@@ -46,6 +58,8 @@ impl Species {
         Self {
             is_metal: anion.is_none() && !NONMETALS.contains(&symbol),
             is_anion: anion.is_some(),
+            is_hydrogen: symbol == "H",
+            is_alkali: is_alkali(element),
             electronegativity: anion.map_or(carbon, |(_, own)| *own),
             covalent_radius: element.covalent_radius().unwrap_or(0.0),
         }
@@ -55,7 +69,8 @@ impl Species {
 /// Removes what covalent radii take for bonds of a metal across an anion: those to another metal if an anion is bonded
 /// to both, and those to an atom between which and the metal a more electronegative one is bonded to both, such as the
 /// phosphorus of a phosphate or the carbon of a carboxylate, if they are longer than the sum of the radii, and
-/// relatively longer than the bond of the metal to the anion.
+/// relatively longer than the bond of the metal to the anion. Also those of alkali metals to hydrogen that is no hydride, as far
+/// as only these are bonded.
 pub(super) fn remove_bridged(bonds: &mut Bonds, frame: &ParticleFrame) {
     let species = |kind: &crate::Kind| kind.element.map_or_else(Species::default, Species::of);
     let table: Vec<Species> = frame.kinds.table.iter().map(species).collect();
@@ -65,8 +80,10 @@ pub(super) fn remove_bridged(bonds: &mut Bonds, frame: &ParticleFrame) {
     }
     let contacts =
         Contacts { adjacency: Adjacency::new(bonds, frame.len()), bonds, frame, table: &table };
-    let keep: Vec<bool> =
-        (0..bonds.len()).into_par_iter().map(|bond| !contacts.is_bridged(bond)).collect();
+    let keep: Vec<bool> = (0..bonds.len())
+        .into_par_iter()
+        .map(|bond| !contacts.is_bridged(bond) && !contacts.is_loose(bond))
+        .collect();
     let mut keep = keep.into_iter();
     bonds.map(|bond| keep.next().unwrap_or(true).then_some(bond));
 }
@@ -96,6 +113,22 @@ impl Contacts<'_> {
         let length = self.bonds.vector(bond, positions, self.frame.cell.as_ref()).length();
         let radii: f64 = ends.iter().map(|&row| self.species(row).covalent_radius).sum();
         length / (radii * self.frame.unit.per_angstrom())
+    }
+
+    /// Returns whether a contact of an alkali metal to hydrogen is too long for hydrogen that is bonded to something
+    /// else, as in water and borohydrides.
+    fn is_loose(&self, bond: usize) -> bool {
+        let (first, second, _) = self.bonds.bond(bond);
+        let [own, other] = [first, second].map(|row| self.species(row));
+        let hydrogen =
+            match (own.is_hydrogen && other.is_alkali, other.is_hydrogen && own.is_alkali) {
+                (true, _) => first,
+                (_, true) => second,
+                (false, false) => return false,
+            };
+        let radii = own.covalent_radius + other.covalent_radius;
+        self.stretch(bond) * radii > radii + TOLERANCE
+            && self.near(hydrogen).any(|near| !self.species(near.row).is_alkali)
     }
 
     fn is_bridged(&self, bond: usize) -> bool {

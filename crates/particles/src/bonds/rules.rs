@@ -1,13 +1,18 @@
 //! Rules for bonds: where they come from, and how far bonded particles may be apart.
 
+use super::bridges;
 use crate::{Format, Kind, ParticleFrame, error::clipped, suggest};
 use std::str::FromStr;
 
 /// Tolerance of the sum of two covalent radii in angstrom, and the least length of a bond, as in Open
 /// Babel (O'Boyle et al., "Open Babel: An open chemical toolbox", Journal of Cheminformatics 2011, and
 /// its documentation of `ConnectTheDots`).
-const TOLERANCE: f64 = 0.45;
+pub(super) const TOLERANCE: f64 = 0.45;
 const LEAST: f64 = 0.4;
+
+/// The excess over that of bonds of hydrogen to alkali metals, of which it is an anion and larger: from `LiH` to `CsH`,
+/// half of the edge of the cell is up to 0.06 angstrom longer than the rule allows (Wyckoff, Crystal Structures, 1963).
+const HYDRIDE: f64 = 0.1;
 
 /// Name that stands for every type.
 const ANY: &str = "*";
@@ -119,21 +124,26 @@ impl BondRules {
 
 /// Returns the cutoffs of covalent radii; particles without an element have no bonds.
 fn covalent(table: &[Kind], per_angstrom: f64) -> Cutoffs {
-    let radius = |kind: &Kind| {
-        let element = kind.element.filter(|_| !kind.virtual_site);
-        element.and_then(crate::Element::covalent_radius)
+    let own = |kind: &Kind| {
+        let element = kind.element.filter(|_| !kind.virtual_site)?;
+        let role = (element.symbol() == "H", bridges::is_alkali(element));
+        element.covalent_radius().map(|radius| (radius, role))
     };
-    let mut radii: Vec<Option<f64>> = Vec::new();
+    let mut radii: Vec<Option<(f64, (bool, bool))>> = Vec::new();
     let class = table.iter().map(|kind| {
-        let radius = radius(kind);
-        radii.iter().position(|own| *own == radius).unwrap_or_else(|| {
-            radii.push(radius);
+        let own = own(kind);
+        radii.iter().position(|known| *known == own).unwrap_or_else(|| {
+            radii.push(own);
             radii.len() - 1
         })
     });
     let class = class.collect();
     let length = |one: usize, other: usize| match (radii[one], radii[other]) {
-        (Some(one), Some(other)) => (one + other + TOLERANCE) * per_angstrom,
+        (Some((one, roles)), Some((other, others))) => {
+            let is_hydride = roles.0 && others.1 || roles.1 && others.0;
+            let excess = if is_hydride { HYDRIDE } else { 0.0 };
+            (one + other + TOLERANCE + excess) * per_angstrom
+        }
         _ => -1.0,
     };
     Cutoffs::new(class, radii.len(), length, LEAST * per_angstrom)

@@ -55,6 +55,10 @@ fn metals_are_not_bonded_across_anions() {
             cif("P 42/m n m", [4.517, 4.517, 3.0205], RIGHT, "Mg 0 0 0\nH .304 .304 0\n"),
             "H-Mg 12",
         ),
+        ("LiH", cubic("F m -3 m", 4.083, "Li 0 0 0\nH .5 .5 .5\n"), "H-Li 24"),
+        ("NaH", cubic("F m -3 m", 4.89, "Na 0 0 0\nH .5 .5 .5\n"), "H-Na 24"),
+        ("KH", cubic("F m -3 m", 5.7, "K 0 0 0\nH .5 .5 .5\n"), "H-K 24"),
+        ("CsH", cubic("F m -3 m", 6.376, "Cs 0 0 0\nH .5 .5 .5\n"), "Cs-H 24"),
         ("SrTiO3", cubic("P m -3 m", 3.905, &perovskite(["Sr", "Ti", "O"])), "O-Sr 12, O-Ti 6"),
         ("CsPbBr3", cubic("P m -3 m", 5.874, &perovskite(["Cs", "Pb", "Br"])), "Br-Pb 6"),
         (
@@ -131,6 +135,20 @@ fn metals_without_anions_between_them_are_bonded() {
     copper = copper.replacen("18", "14", 1);
     assert_eq!(bonds(&rhenium), "Cl-Re 8, Re-Re 1");
     assert_eq!(bonds(&copper), "C-O 8, Cu-Cu 1, Cu-O 8");
+}
+
+/// Sodium beside a molecule of water, whose hydrogen is no hydride.
+#[test]
+fn alkali_metals_are_not_bonded_to_hydrogen_of_water() {
+    let at = |distance: f64| {
+        format!(
+            "4\n\nNa 0 0 0\nH {distance} 0 0\nO {} 0.3 0\nH {} 0.1 0\n",
+            distance + 0.9,
+            distance + 1.8
+        )
+    };
+    assert_eq!(bonds(&at(2.5)), "H-O 2");
+    assert_eq!(bonds("2\n\nNa 0 0 0\nH 2.5 0 0\n"), "H-Na 1");
 }
 
 #[test]

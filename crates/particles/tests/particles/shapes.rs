@@ -47,11 +47,13 @@ fn data_files_have_a_section_of_ellipsoids() {
     let section = "Ellipsoids\n\n3 2 4 8 1 0 0 1\n5 2 4 8 1 0 0 0\n";
     check(&frame(&format!("{DATA}{section}")), 0);
     for (row, place) in [("5 2 4 8 1 0 0", "19"), ("5 2 4 x 1 0 0 0", "19:7")] {
-        let file = file(format!("{DATA}Ellipsoids
+        let file = file(format!(
+            "{DATA}Ellipsoids
 
 3 2 4 8 1 0 0 1
 {row}
-"));
+"
+        ));
         let error = read_frame(&file.path, &ReadOptions::default()).expect_err(row).to_string();
         assert!(error.contains(&format!("input:{place}")), "{row}: {error}");
     }

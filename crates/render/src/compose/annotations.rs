@@ -292,8 +292,20 @@ fn color_legend(categories: &[Category], label: String, position: Anchor) -> Col
     let omitted = chosen.len().saturating_sub(ENTRIES) as u64;
     chosen.truncate(ENTRIES);
     chosen.sort_by(|a, b| by_name(a, b));
-    let entries = chosen.iter().map(|category| (category.color, category.name.clone()));
+    let entries = chosen.iter().map(|category| (category.color, entry(category, categories)));
     ColorLegend { label, entries: entries.collect(), omitted, position }
+}
+
+/// Returns the name of a category in a legend. Of several of one name, such as the chain C and carbon, each says what it is; of
+/// those that are the same, the ones of styles say of which selection they are.
+fn entry(category: &Category, all: &[Category]) -> String {
+    let Category { name, source, selection, .. } = category;
+    let twins = || all.iter().filter(|own| own.name == *name && *own != category);
+    if twins().any(|own| own.source != *source) {
+        return format!("{name} ({source})");
+    }
+    let is_told = twins().next().is_none() || selection.is_empty() || selection == name;
+    if is_told { name.clone() } else { format!("{name} ({selection})") }
 }
 
 /// Compares names: numbers by value, and before other names.
@@ -348,11 +360,36 @@ mod tests {
     }
 
     #[test]
+    fn names_that_are_alike_say_what_they_are() {
+        let category = |name: &str, source: &str, selection: &str, red: f32| Category {
+            name: name.to_owned(),
+            color: Rgb::X * red,
+            count: 1,
+            source: source.to_owned(),
+            selection: selection.to_owned(),
+        };
+        let own = category("C", "chain", "", 0.1);
+        let carbon = category("C", "element", "ligand", 0.2);
+        let others = [category("C", "element", "", 0.3), category("D", "chain", "", 0.4)];
+        let names = |all: &[Category]| {
+            let legend = color_legend(all, String::new(), Anchor::Top);
+            legend.entries.into_iter().map(|(_, name)| name).collect::<Vec<_>>()
+        };
+        assert_eq!(
+            names(&[own, carbon.clone(), others[1].clone()]),
+            ["C (chain)", "C (element)", "D"]
+        );
+        assert_eq!(names(&[others[0].clone(), carbon]), ["C", "C (ligand)"]);
+    }
+
+    #[test]
     fn legends_show_the_most_frequent_names_in_order() {
         let category = |name: usize| Category {
             name: name.to_string(),
             color: Rgb::ONE,
             count: if name == 3 { 1 } else { 100 - name as u64 },
+            source: "element".to_owned(),
+            selection: String::new(),
         };
         let categories: Vec<Category> = (1..=14).map(category).collect();
         let legend = color_legend(&categories, String::new(), Anchor::Top);

@@ -391,8 +391,7 @@ fn draw_boundary(
     path: &Path,
     particles: &mut Particles,
 ) -> Result<(), FileError> {
-    let style = &request.style;
-    let polyhedra = style.polyhedra.find(path, particles, style.allow_empty)?;
+    let polyhedra = request.style.find_polyhedra(path, particles)?;
     let drawn = particles.draw_boundary(request.cell.boundary, &polyhedra);
     drawn.map_err(|error| FileError::whole_file(path, error.to_string()))
 }

@@ -107,6 +107,7 @@ impl Survey {
             });
             let same = |own: &&mut Named| {
                 own.category.name == category.name
+                    && own.category.source == category.source
                     && own.label == label
                     && (label.is_some() || own.category.color == category.color)
             };

@@ -4,7 +4,8 @@ use super::block::Block;
 use super::materials::{self, Materials};
 use crate::scene::keys::{Schema, StyleKeys};
 use crate::scene::particles::{
-    ColorEnds, Coloring, Model, Opacity, ParticleStyle, Particles, Properties, SelectedStyle,
+    Boundary, ColorEnds, Coloring, Model, Opacity, ParticleStyle, Particles, Properties,
+    SelectedStyle,
 };
 use crate::scene::{FileError, NamedMaterial, Scene};
 use std::path::Path;
@@ -30,6 +31,18 @@ fn read_style(block: &Block) -> Result<SelectedStyle, FileError> {
     (own.radius, own.scale) = (keys.radius, keys.scale);
     (own.bonds, own.bond_radius) = (keys.bonds, keys.bond_radius);
     own.opacity = keys.opacity.map(Opacity::Number);
+    if let Some(text) = keys.polyhedra {
+        own.set("polyhedra", &text).map_err(|message| block.error_at("polyhedra", &message))?;
+    }
+    match (&mut own.polyhedra, keys.polyhedra_opacity) {
+        (Some(polyhedra), opacity) => polyhedra.opacity = opacity,
+        (None, None) => {}
+        (None, Some(_)) => {
+            return Err(
+                block.error_at("polyhedra_opacity", "`polyhedra_opacity` needs `polyhedra`")
+            );
+        }
+    }
     own.visible = (!keys.visible).then_some(false);
     let log = keys.log.then(|| "yes".to_owned());
     for (name, text) in [("color", keys.color), ("map", keys.map), ("log", log)] {
@@ -59,6 +72,12 @@ pub(super) fn append(
     materials: &mut Materials,
 ) -> Result<(), FileError> {
     style.apply(path, &mut particles)?;
+    let polyhedra = style.find_polyhedra(path, &mut particles)?;
+    if !polyhedra.is_empty() {
+        let boundary = Boundary { complete: Some(false), outside: None };
+        let drawn = particles.draw_boundary(boundary, &polyhedra);
+        drawn.map_err(|error| FileError::whole_file(path, error.to_string()))?;
+    }
     for name in particles.material_names.iter().filter(|name| !name.is_empty()) {
         if let Some(row) = materials.position(name)
             && particles.materials.iter().all(|own| own.name != *name)

@@ -716,6 +716,8 @@ pub(in crate::scene) struct StyleKeys {
     pub(in crate::scene) bonds: Option<bool>,
     pub(in crate::scene) bond_radius: Option<f64>,
     pub(in crate::scene) opacity: Option<f64>,
+    pub(in crate::scene) polyhedra: Option<String>,
+    pub(in crate::scene) polyhedra_opacity: Option<f64>,
     pub(in crate::scene) material: Option<TypeMaterial>,
     pub(in crate::scene) visible: bool,
 }
@@ -734,6 +736,8 @@ impl Section for StyleKeys {
         bonds: None,
         bond_radius: None,
         opacity: None,
+        polyhedra: None,
+        polyhedra_opacity: None,
         material: None,
         visible: true,
     };
@@ -763,12 +767,17 @@ impl Section for StyleKeys {
         let help = "radius as it is drawn, in the scene's unit";
         keys.visit(key("radius", help).or("the model's"), Optional(Positive), radius);
         keys.visit(key("scale", "factor on the radius").or("1"), Optional(Positive), scale);
-        let Self { bonds, bond_radius, opacity, material, visible, .. } = self;
+        let Self { bonds, bond_radius, opacity, polyhedra, polyhedra_opacity, .. } = self;
         let help = "whether bonds are drawn";
         keys.visit(key("bonds", help).or("as the model has them"), Optional(Flag), bonds);
         let help = "radius of the sticks of bonds, in the scene's unit";
         keys.visit(key("bond_radius", help).or("the model's"), Optional(Positive), bond_radius);
         keys.visit(key("opacity", "opacity").or("1"), Optional(Share), opacity);
+        let help = "coordination polyhedra of these particles, as in `\"Ti-O\"` or `\"Ti-O<2.5\"`";
+        keys.visit(key("polyhedra", help).or("none"), Optional(Text), polyhedra);
+        let help = "opacity of their faces";
+        keys.visit(key("polyhedra_opacity", help).or("0.7"), Optional(Share), polyhedra_opacity);
+        let Self { material, visible, .. } = self;
         let default = "that of the file, or of `[[file]]`";
         let words = Optional(Word(&TypeMaterial::ALL));
         keys.visit(key("material", "material").or(default), words, material);

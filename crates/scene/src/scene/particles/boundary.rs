@@ -48,8 +48,6 @@ pub struct AddedBodies {
     /// Halves of bonds that leave what is drawn.
     pub(super) stubs: Vec<Stub>,
     pub(super) polyhedra: Vec<Polyhedron>,
-    /// Opacity of their faces, if one is given.
-    pub(super) face_opacity: Option<f64>,
 }
 
 /// The half of a bond that leaves what is drawn.
@@ -115,7 +113,7 @@ impl Particles {
         let row = |(row, shift): (u32, [i32; 3])| images.row_of(count, row, shift);
         let drawn = centers.iter().filter_map(|(coordination, shift, place)| {
             let corners = coordination.corners(*shift).map(row).collect::<Option<Vec<u32>>>()?;
-            Some(Polyhedron::new(*place, &corners, &coordination.hull))
+            Some(Polyhedron::new(*place, &corners, coordination))
         });
         self.added.polyhedra = drawn.collect();
         if images.is_empty() && leaving == Outside::Halves {

@@ -93,6 +93,7 @@ impl Particles {
         spheres.material = spheres.material.repeat(count);
         spheres.color = spheres.color.repeat(count);
         self.stick_radii = self.stick_radii.repeat(count);
+        self.polyhedra = self.polyhedra.repeat(count);
         self.frame.repeat(count);
         self.arrows.vectors = self.arrows.vectors.repeat(count);
         if let Some(bonds) = &mut self.frame.bonds {

@@ -27,6 +27,9 @@ pub struct Particles {
     pub stick_radius: f64,
     /// Radius of the sticks at each particle, if they differ; 0 where none are drawn.
     pub stick_radii: Vec<f64>,
+    /// Row of the polyhedra of each particle among those of the style ([`ParticleStyle::find_polyhedra`](super::ParticleStyle::find_polyhedra));
+    /// empty if all have the same.
+    pub polyhedra: Vec<u32>,
     /// Arrows for vectors, if they were asked for ([`ParticleStyle::arrows`](super::ParticleStyle::arrows)).
     pub arrows: Arrows,
     /// Chosen materials, by names in `material_names`; the others are defined by the scene.

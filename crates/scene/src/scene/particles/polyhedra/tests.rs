@@ -1,5 +1,7 @@
 use super::*;
-use crate::scene::particles::{Bonds, Boundary, Cell, Codes, Element, Kind, Outside};
+use crate::scene::particles::{
+    Bonds, Boundary, Cell, Codes, Element, Kind, Outside, ParticleStyle, SelectedStyle,
+};
 use crate::scene::{Rgb, Scene};
 
 /// Perovskite in a cell of edge 4: a titanium atom on the corner, and oxygen atoms on the middles of the edges.
@@ -22,7 +24,7 @@ fn perovskite() -> Particles {
 
 fn find(particles: &mut Particles, rules: &str) -> Result<Vec<Coordination>, String> {
     let rules: Polyhedra = rules.parse().expect(rules);
-    let found = rules.find(Path::new("file"), particles, false);
+    let found = super::find(&[&rules], Path::new("file"), particles, false);
     found.map_err(|error| error.to_string())
 }
 
@@ -89,6 +91,42 @@ fn mistakes_are_named() {
     assert!(find(&mut particles, "Ti-O<12").is_err_and(|error| error.contains("more than 64")));
     let rules: Polyhedra = "Zr-O<2".parse().expect("a rule");
     assert!(
-        rules.find(Path::new("file"), &mut particles, true).is_ok_and(|found| found.is_empty())
+        super::find(&[&rules], Path::new("file"), &mut particles, true)
+            .is_ok_and(|found| found.is_empty())
     );
+}
+
+/// The particles of a style have its polyhedra, and others those of all.
+#[test]
+fn styles_have_polyhedra_of_their_own() {
+    let found = |rules: &str, styles: &[&str]| {
+        let mut particles = perovskite();
+        let style = ParticleStyle {
+            polyhedra: rules.parse().unwrap_or_default(),
+            styles: styles.iter().map(|style| style.parse().expect(style)).collect(),
+            ..ParticleStyle::default()
+        };
+        style.apply(Path::new("file"), &mut particles).expect("a style");
+        particles.replicate([2, 1, 1]).expect("copies");
+        let found = style.find_polyhedra(Path::new("file"), &mut particles).expect("neighbors");
+        found.iter().map(|own| (own.center, own.neighbors.len(), own.opacity)).collect::<Vec<_>>()
+    };
+    let own = ["element Ti: polyhedra=Ti-O<2.1 polyhedra-opacity=30%"];
+    assert_eq!(found("", &own), [(0, 6, 0.3), (4, 6, 0.3)]);
+    assert_eq!(found("*-O<3", &["element O: polyhedra=none"]), [(0, 6, OPACITY), (4, 6, OPACITY)]);
+    assert_eq!(found("Ti-O<2.1", &["element O: polyhedra=O-O<1"]).len(), 2);
+    assert_eq!(
+        found("Ti-O<2.1", &["element Ti: polyhedra=no", "element Ti: polyhedra=Ti-O<2.1"]).len(),
+        2
+    );
+    assert!(found("", &["element O: polyhedra=Ti-O<2.1"]).is_empty());
+    let faults = [
+        "all: polyhedra=Ti",
+        "all: polyhedra-opacity=0.5",
+        "all: polyhedra=Ti-O polyhedra-opacity=2",
+    ];
+    for (text, part) in faults.into_iter().zip(["Ti-O<2.5", "after polyhedra", "0 to 1"]) {
+        let message = text.parse::<SelectedStyle>().expect_err(text);
+        assert!(message.contains(part), "{message}");
+    }
 }

@@ -297,6 +297,20 @@ fn number<'p>(
             let parts = parts.iter().map(|part| number(part, particles, help));
             Ok(Number::Call(*function, parts.collect::<Result<_, _>>()?))
         }
+        Node::Length(name, components) => {
+            let bound = components.iter().map(|part| number(part, particles, help)).collect();
+            match bound {
+                Ok(components) => Ok(Number::Call(Function::Norm, components)),
+                Err(_) if Column::find(particles, name).is_some() => Err((
+                    tree.span.clone(),
+                    format!(
+                        "`{name}` is a number and no vector: write `abs({name})`, or three numbers as in \
+                         `norm(x, y, z)`"
+                    ),
+                )),
+                Err(fault) => Err(fault),
+            }
+        }
         _ => wrong("expected a number, but this is a condition"),
     }
 }

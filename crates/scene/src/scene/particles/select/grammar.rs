@@ -27,6 +27,8 @@ pub(super) enum Node {
     /// Operands in order, evaluated from left to right.
     Arithmetic(Box<Tree>, Vec<(Sign, Tree)>),
     Call(Function, Vec<Tree>),
+    /// The length of a vector with a name, and its components.
+    Length(String, Vec<Tree>),
     Compare(Sign, Box<[Tree; 2]>),
     Not(Box<Tree>),
     All(Vec<Tree>),
@@ -296,10 +298,12 @@ impl Parser<'_> {
                 }
             });
         };
-        if function == Function::Norm {
-            arguments = components(arguments);
-        }
         let span = span.start..close.end;
+        if function == Function::Norm
+            && let Some((name, components)) = vector(&arguments)
+        {
+            return Ok(Tree { node: Node::Length(name, components), span });
+        }
         match function.refuse(arguments.len()) {
             Some(what) => Err((span, format!("`{name}` takes {what}"))),
             None => Ok(Tree { node: Node::Call(function, arguments), span }),
@@ -307,11 +311,12 @@ impl Parser<'_> {
     }
 }
 
-/// Replaces the name of a vector by its components.
-fn components(arguments: Vec<Tree>) -> Vec<Tree> {
-    let [Tree { node: Node::Word(name) | Node::Column(name), span }] = &arguments[..] else {
-        return arguments;
+/// Returns the name of a vector and its components, if there is nothing else.
+fn vector(arguments: &[Tree]) -> Option<(String, Vec<Tree>)> {
+    let [Tree { node: Node::Word(name) | Node::Column(name), span }] = arguments else {
+        return None;
     };
-    let Ok(VectorColumns(names)) = name.parse() else { return arguments };
-    names.map(|name| Tree { node: Node::Column(name), span: span.clone() }).into()
+    let VectorColumns(names) = name.parse().ok()?;
+    let component = |name| Tree { node: Node::Column(name), span: span.clone() };
+    Some((name.clone(), names.map(component).into()))
 }

@@ -224,7 +224,7 @@ fn collect(tree: &Tree, names: &mut Vec<String>) {
                 collect(operand, names);
             }
         }
-        Node::All(parts) | Node::Any(parts) | Node::Call(_, parts) => {
+        Node::All(parts) | Node::Any(parts) | Node::Call(_, parts) | Node::Length(_, parts) => {
             for part in parts {
                 collect(part, names);
             }

@@ -109,6 +109,7 @@ fn errors_are_reported_at_their_position() {
         ("z > max(1)", "max(1): `max` takes two numbers or more"),
         ("norm(x, y) > 1", "norm(x, y): `norm` takes a vector or three numbers"),
         ("norm(velocity) > 1", "velocity: no column is named `vx`"),
+        ("norm(x) > 1", "norm(x): `x` is a number and no vector: write `abs(x)`"),
         ("sqrt(z > 5) > 1", ">: expected an operator, `,` or `)` before this"),
         ("sqrt(element) > 1", "element: the column `element` holds texts"),
         ("element == C, O", ",: unexpected `,`"),

@@ -90,6 +90,19 @@ pub(super) enum Group {
     Hetero,
 }
 
+/// The way in which the atoms of a group are told.
+#[derive(Clone, Copy)]
+enum Members {
+    /// Everything, or nothing.
+    Everything(bool),
+    /// Residues of some names: [`Group::has_residue`].
+    Residues,
+    /// Atoms of some residues with one of these names, or with none of them.
+    Atoms { residues: &'static [&'static str], names: &'static [&'static str], are_named: bool },
+    /// Hydrogens, or all others.
+    Hydrogens(bool),
+}
+
 /// Words for groups, in VMD and `MDAnalysis`.
 const WORDS: [(&str, Group); 25] = [
     ("all", Group::All),
@@ -130,23 +143,38 @@ impl Group {
         WORDS.iter().find(|(own, _)| own.eq_ignore_ascii_case(word)).map(|(_, group)| *group)
     }
 
-    /// Returns the columns that the group depends on.
-    pub(super) fn columns(self) -> &'static [&'static str] {
+    /// Returns the way in which its atoms are told.
+    fn members(self) -> Members {
+        let atoms = |residues, names| Members::Atoms { residues, names, are_named: true };
         match self {
-            Self::All | Self::None => &[],
-            Self::Hydrogen | Self::Heavy => &[ELEMENT, NAME],
+            Self::All => Members::Everything(true),
+            Self::None => Members::Everything(false),
             Self::Protein
             | Self::Nucleic
             | Self::Water
             | Self::Ions
             | Self::Lipids
             | Self::Ligand
-            | Self::Hetero => &[RESNAME],
-            Self::Backbone
-            | Self::Sidechain
-            | Self::AlphaCarbons
-            | Self::NucleicBackbone
-            | Self::Bases => &[RESNAME, NAME],
+            | Self::Hetero => Members::Residues,
+            Self::Backbone => atoms(&PROTEIN, &BACKBONE),
+            Self::Sidechain => {
+                Members::Atoms { residues: &PROTEIN, names: &BACKBONE, are_named: false }
+            }
+            Self::AlphaCarbons => atoms(&PROTEIN, &["CA"]),
+            Self::NucleicBackbone => atoms(&NUCLEIC, &NUCLEIC_BACKBONE),
+            Self::Bases => atoms(&NUCLEIC, &BASES),
+            Self::Hydrogen => Members::Hydrogens(true),
+            Self::Heavy => Members::Hydrogens(false),
+        }
+    }
+
+    /// Returns the columns that the group depends on.
+    pub(super) fn columns(self) -> &'static [&'static str] {
+        match self.members() {
+            Members::Everything(_) => &[],
+            Members::Residues => &[RESNAME],
+            Members::Atoms { .. } => &[RESNAME, NAME],
+            Members::Hydrogens(_) => &[ELEMENT, NAME],
         }
     }
 
@@ -173,38 +201,22 @@ impl Group {
     ///
     /// A message: the particles have no names of residues, or of atoms.
     pub(super) fn rows(self, particles: &Particles) -> Result<Vec<bool>, String> {
-        let count = particles.spheres.len();
-        let residues = |names: &[&str]| {
-            has_name(particles, RESNAME, "residues", &|name| names.contains(&name))
-        };
-        let atoms = |names: &[&str]| {
-            has_name(particles, NAME, "atoms", &|name| {
-                names.contains(&name) || names.contains(&name.replace('*', "'").as_str())
-            })
-        };
-        let both = |one: Vec<bool>, other: Vec<bool>, wanted: bool| {
-            one.into_iter().zip(other).map(|(one, other)| one && other == wanted).collect()
-        };
-        Ok(match self {
-            Self::All => vec![true; count],
-            Self::None => vec![false; count],
-            Self::Protein
-            | Self::Nucleic
-            | Self::Water
-            | Self::Ions
-            | Self::Lipids
-            | Self::Ligand
-            | Self::Hetero => {
-                has_name(particles, RESNAME, "residues", &|name| self.has_residue(name))?
+        let residues = |fits: &dyn Fn(&str) -> bool| has_name(particles, RESNAME, "residues", fits);
+        match self.members() {
+            Members::Everything(is_of) => Ok(vec![is_of; particles.spheres.len()]),
+            Members::Residues => residues(&|name| self.has_residue(name)),
+            Members::Atoms { residues: own, names, are_named } => {
+                let of_residues = residues(&|name| own.contains(&name))?;
+                let named = has_name(particles, NAME, "atoms", &|name| {
+                    names.contains(&name) || names.contains(&name.replace('*', "'").as_str())
+                })?;
+                let both = of_residues.into_iter().zip(named);
+                Ok(both.map(|(is_of, is_named)| is_of && is_named == are_named).collect())
             }
-            Self::Backbone => both(residues(&PROTEIN)?, atoms(&BACKBONE)?, true),
-            Self::Sidechain => both(residues(&PROTEIN)?, atoms(&BACKBONE)?, false),
-            Self::AlphaCarbons => both(residues(&PROTEIN)?, atoms(&["CA"])?, true),
-            Self::NucleicBackbone => both(residues(&NUCLEIC)?, atoms(&NUCLEIC_BACKBONE)?, true),
-            Self::Bases => both(residues(&NUCLEIC)?, atoms(&BASES)?, true),
-            Self::Hydrogen => hydrogen(particles)?,
-            Self::Heavy => hydrogen(particles)?.into_iter().map(|is| !is).collect(),
-        })
+            Members::Hydrogens(are) => {
+                Ok(hydrogen(particles)?.into_iter().map(|is| is == are).collect())
+            }
+        }
     }
 }
 

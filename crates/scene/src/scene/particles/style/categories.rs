@@ -16,6 +16,10 @@ pub struct Category {
     pub color: Rgb,
     /// Number of particles.
     pub count: u64,
+    /// What the name is: a column or an expression, `element` or `selection`.
+    pub source: String,
+    /// The selection whose style has the color; empty for the colors of all particles.
+    pub selection: String,
 }
 
 /// The particles of one code of a column.
@@ -37,7 +41,7 @@ impl Particles {
             let rows = 0..self.spheres.len();
             rows.filter(|&row| painters.get(row).copied().unwrap_or(0) == painter).collect()
         };
-        let mut categories = Vec::new();
+        let mut categories: Vec<Category> = Vec::new();
         let mut named = false;
         let own =
             style.styles.iter().map(|own| (own.selection.text(), own.properties.color.as_ref()));
@@ -50,7 +54,16 @@ impl Particles {
             }
             let Some(found) = self.categories_of(name, coloring, &rows) else { continue };
             named = true;
-            categories.extend(found);
+            for category in found {
+                let same = |own: &&mut Category| {
+                    let Category { name, color, source, .. } = &**own;
+                    (name, color, source) == (&category.name, &category.color, &category.source)
+                };
+                match categories.iter_mut().find(same) {
+                    Some(own) => own.count += category.count,
+                    None => categories.push(category),
+                }
+            }
         }
         named.then_some(categories)
     }
@@ -66,7 +79,9 @@ impl Particles {
             Coloring::Uniform(_) if name.is_empty() => None,
             Coloring::Uniform(color) => {
                 let count = rows.len() as u64;
-                Some(vec![Category { name: name.to_owned(), color: *color, count }])
+                let (name, source) = (name.to_owned(), "selection".to_owned());
+                let selection = name.clone();
+                Some(vec![Category { name, color: *color, count, source, selection }])
             }
             Coloring::Column(colors) => {
                 let path = Path::new("");
@@ -75,7 +90,8 @@ impl Particles {
                 let Colored::Names { names, codes, .. } = column else { return None };
                 let coded = rows.iter().enumerate().map(|(at, &row)| (row, codes.code(at)));
                 let groups = self.groups(coded, names.len())?;
-                Some(merged(names.iter().map(|name| [&**name; 2]).zip(groups)))
+                let groups = names.iter().map(|own| [&**own; 2]).zip(groups);
+                Some(merged(groups, &colors.column, name))
             }
             Coloring::Usual | Coloring::Elements(_) => {
                 let kinds = &self.frame.kinds;
@@ -88,7 +104,7 @@ impl Particles {
                     let element: Option<&str> = kind.element.map(Element::symbol);
                     [element.unwrap_or(&kind.name), &kind.name]
                 });
-                Some(merged(named.zip(groups)))
+                Some(merged(named.zip(groups), "element", name))
             }
         }
     }
@@ -113,7 +129,11 @@ impl Particles {
 
 /// Merges groups of one name and color. Of several colors of a name, only the most frequent keeps the
 /// name; the others have the second, more precise name.
-fn merged<'a>(groups: impl Iterator<Item = ([&'a str; 2], Group)>) -> Vec<Category> {
+fn merged<'a>(
+    groups: impl Iterator<Item = ([&'a str; 2], Group)>,
+    source: &str,
+    selection: &str,
+) -> Vec<Category> {
     let groups: Vec<([&str; 2], Rgb, u64)> = groups
         .filter_map(|(names, Group { color, count, .. })| Some((names, color?, count)))
         .collect();
@@ -136,7 +156,13 @@ fn merged<'a>(groups: impl Iterator<Item = ([&'a str; 2], Group)>) -> Vec<Catego
         let same = |category: &&mut Category| category.name == name && category.color == color;
         match categories.iter_mut().find(same) {
             Some(category) => category.count += count,
-            None => categories.push(Category { name: name.to_owned(), color, count }),
+            None => categories.push(Category {
+                name: name.to_owned(),
+                color,
+                count,
+                source: source.to_owned(),
+                selection: selection.to_owned(),
+            }),
         }
     }
     categories
@@ -178,6 +204,20 @@ mod tests {
         };
         assert_eq!(categories(&by("chain")), Some(named(&[("A", 2), ("B", 2)])));
         assert_eq!(categories(&by("x")), None);
+    }
+
+    /// Carbon of a ligand and carbon of all others are one name if they have one color.
+    #[test]
+    fn names_of_styles_are_told_apart_by_their_source() {
+        let by = |column: &str| {
+            let column = ColumnColors { column: column.to_owned(), ..ColumnColors::default() };
+            Coloring::Column(column)
+        };
+        let styles = vec!["chain B: color=element".parse().expect("a style")];
+        let style = ParticleStyle { coloring: by("chain"), styles, ..ParticleStyle::default() };
+        assert_eq!(categories(&style), Some(named(&[("A", 2), ("C", 1), ("O", 1)])));
+        let same = ParticleStyle { coloring: Coloring::Usual, ..style };
+        assert_eq!(categories(&same), Some(named(&[("N", 1), ("C", 2), ("O", 1)])));
     }
 
     #[test]

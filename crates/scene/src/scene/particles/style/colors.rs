@@ -134,14 +134,14 @@ impl ColumnColors {
             return Ok(());
         }
         let (stem, reversed) = name.strip_suffix("_r").map_or((name, false), |stem| (stem, true));
-        let map = stem.parse().or_else(|why: String| {
+        let map = stem.parse().map_err(|why: String| {
             if stem.contains(',') {
-                return Err(why);
+                return why;
             }
             let names = Map::ALL.into_iter().map(Map::name).chain([CATEGORIES]);
             let help = suggest::help(stem, names, "maps are");
             let others = "maps are also reversed, with _r, or colors, as in navy,white,firebrick";
-            Err(format!("unknown color map `{name}`; {help} ({others})"))
+            format!("unknown color map `{name}`; {help} ({others})")
         })?;
         (self.numbers, self.map, self.reversed) = (NumberColors::Map, Some(map), reversed);
         Ok(())

@@ -28,8 +28,9 @@ pub use summary::{ColumnSummary, SharedColors};
 pub use types::{TypeMaterial, TypeStyle};
 
 use super::NumberColumn;
+use super::polyhedra;
 use super::select::{Selection, expression};
-use super::{BondSource, Model, Orientation, Particles, Polyhedra, SharedNames};
+use super::{BondSource, Coordination, Model, Orientation, Particles, Polyhedra, SharedNames};
 use crate::scene::{FileError, Rgb};
 use spherule_particles::internals::aliases;
 use std::path::Path;
@@ -100,7 +101,7 @@ impl ParticleStyle {
             (Some(source), _) => source.clone(),
             (None, Some(model)) if model.draws_bonds() => BondSource::Auto,
             (None, _) if self.properties().any(Properties::draws_bonds) => BondSource::Auto,
-            _ if self.polyhedra.need_bonds() => BondSource::Auto,
+            _ if self.polyhedra_of_all().any(Polyhedra::need_bonds) => BondSource::Auto,
             (None, Some(_)) => BondSource::None,
             (None, None) => BondSource::OfCrystals,
         }
@@ -117,6 +118,27 @@ impl ParticleStyle {
     fn properties(&self) -> impl Iterator<Item = &Properties> {
         let types = self.types.iter().map(|style| &style.properties);
         types.chain(self.styles.iter().map(|style| &style.properties))
+    }
+
+    /// Returns the polyhedra of all particles, and then those of types and of selections that say any.
+    fn polyhedra_of_all(&self) -> impl Iterator<Item = &Polyhedra> {
+        std::iter::once(&self.polyhedra)
+            .chain(self.properties().filter_map(|own| own.polyhedra.as_ref()))
+    }
+
+    /// Finds the polyhedra of particles to which this style was applied: see [`Coordination`].
+    ///
+    /// # Errors
+    ///
+    /// A rule names no type of the file unless frames may be empty, there are no bonds although a rule has no distance, or a
+    /// center has too many neighbors.
+    pub fn find_polyhedra(
+        &self,
+        path: &Path,
+        particles: &mut Particles,
+    ) -> Result<Vec<Coordination>, FileError> {
+        let all: Vec<&Polyhedra> = self.polyhedra_of_all().collect();
+        polyhedra::find(&all, path, particles, self.allow_empty)
     }
 
     /// Returns the sources of colors: of all, of types and of selections.
@@ -221,10 +243,12 @@ impl ParticleStyle {
             particles.frame.warnings.push(warning);
         }
         let asks_for_bonds = self.bonds.is_some() || self.draws_crystal(particles);
-        let has_balls = has_bonds && asks_for_bonds || !self.polyhedra.is_empty();
+        let has_balls =
+            has_bonds && asks_for_bonds || !self.polyhedra_of_all().all(Polyhedra::is_empty);
         let usual = if has_balls { Model::BallAndStick } else { Model::SpaceFilling };
         let base = self.model.unwrap_or(usual);
         selected::shape(&assigned, particles, base, self.bond_radius);
+        selected::set_polyhedra(&assigned, particles);
         selected::set_materials(&assigned, particles);
         selected::set_opacities(&assigned, path, particles)?;
         Ok(applied)

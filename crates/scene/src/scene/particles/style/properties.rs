@@ -3,8 +3,8 @@
 use super::types::TypeMaterial;
 use super::{Coloring, ColumnColors, ElementColors, Opacity};
 use crate::color::{self, Rgb, Spacing};
-use crate::scene::particles::Model;
-use crate::suggest;
+use crate::scene::particles::{Model, Polyhedra};
+use crate::{settings, suggest};
 use std::str::FromStr;
 
 /// The properties of the look of some particles. What is not given stays as it is.
@@ -24,6 +24,8 @@ pub struct Properties {
     pub bond_radius: Option<f64>,
     /// Opacity.
     pub opacity: Option<Opacity>,
+    /// Coordination polyhedra of these particles, none if there are no rules, instead of those of all.
+    pub polyhedra: Option<Polyhedra>,
     /// Material.
     pub material: Option<TypeMaterial>,
     /// False if the particles are not drawn.
@@ -31,7 +33,7 @@ pub struct Properties {
 }
 
 /// The names of properties in options, with the values that they take.
-pub const PROPERTIES: [(&str, &str); 12] = [
+pub const PROPERTIES: [(&str, &str); 14] = [
     ("model", "space-filling, ball-and-stick or licorice"),
     ("color", "a color, element, or a column or an expression over columns"),
     ("map", "the color map of a column of numbers"),
@@ -42,6 +44,8 @@ pub const PROPERTIES: [(&str, &str); 12] = [
     ("bonds", "yes or no"),
     ("bond-radius", "the radius of the sticks of bonds"),
     ("opacity", "0 to 1, or a column or an expression over columns"),
+    ("polyhedra", "coordination polyhedra, as in Ti-O or Ti-O<2.5, or none"),
+    ("polyhedra-opacity", "0 to 1, of their faces"),
     ("material", "lambertian, plastic, metal, glass, mirror or emitter"),
     ("visible", "yes or no"),
 ];
@@ -77,6 +81,10 @@ impl Properties {
         {
             return Err(format!("`opacity` of {of} is {opacity}, but must be 0 to 1"));
         }
+        let faces = self.polyhedra.as_ref().and_then(|polyhedra| polyhedra.opacity);
+        if let Some(opacity) = faces.filter(|opacity| !(0.0..=1.0).contains(opacity)) {
+            return Err(format!("`polyhedra_opacity` of {of} is {opacity}, but must be 0 to 1"));
+        }
         let valid = |color: &Rgb| (0..3).all(|channel| (0.0..=1.0).contains(&color[channel]));
         match self.color {
             Some(Coloring::Uniform(color)) if !valid(&color) => {
@@ -108,6 +116,16 @@ impl Properties {
             "bonds" => self.bonds = Some(flag(value)?),
             "bond-radius" => self.bond_radius = Some(positive("bond radius", value)?),
             "opacity" => self.opacity = Some(value.parse()?),
+            "polyhedra" => {
+                let none = matches!(value, "none" | "no");
+                self.polyhedra = Some(if none { Polyhedra::default() } else { value.parse()? });
+            }
+            "polyhedra-opacity" => match &mut self.polyhedra {
+                Some(polyhedra) => polyhedra.opacity = Some(share(value)?),
+                None => {
+                    return Err(format!("`{name}` is for polyhedra: write it after polyhedra=A-B"));
+                }
+            },
             "material" => self.material = Some(TypeMaterial::of_word(value)?),
             "visible" => self.visible = Some(flag(value)?),
             other => {
@@ -196,6 +214,11 @@ fn coloring(text: &str) -> Result<Coloring, String> {
 fn positive(what: &str, text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number| *number > 0.0 && *number < f64::INFINITY);
     number.ok_or_else(|| format!("`{text}` is not a valid {what}: write a number greater than 0"))
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let share = settings::share(text).filter(|share| (0.0..=1.0).contains(share));
+    share.ok_or_else(|| format!("`{text}` is not an opacity: write a number from 0 to 1"))
 }
 
 fn flag(text: &str) -> Result<bool, String> {

@@ -233,6 +233,17 @@ pub(super) fn shape(
     }
 }
 
+/// Gives particles the polyhedra that their properties say, as rows of [`ParticleStyle::polyhedra_of_all`].
+pub(super) fn set_polyhedra(assigned: &[Assigned], particles: &mut Particles) {
+    let says = |own: &&Assigned| own.properties.polyhedra.is_some();
+    for (own, Assigned { rows, .. }) in (1..).zip(assigned.iter().filter(says)) {
+        particles.polyhedra.resize(particles.spheres.len(), 0);
+        for &row in rows {
+            particles.polyhedra[row] = own;
+        }
+    }
+}
+
 /// Gives particles, which have their final colors, their materials.
 pub(super) fn set_materials(assigned: &[Assigned], particles: &mut Particles) {
     for Assigned { name, rows, properties, .. } in assigned {
