@@ -1,7 +1,28 @@
 //! Arguments of `spherule view`.
 
 use crate::cli::render::RenderArgs;
+use clap::Arg;
 use std::path::PathBuf;
+
+/// Options of `spherule render` that the viewer always refuses, and hides from its help.
+const REFUSED: [&str; 11] = [
+    "output_format",
+    "region",
+    "layers",
+    "part",
+    "split",
+    "turntable",
+    "fps",
+    "checkpoint",
+    "checkpoint_every",
+    "resume",
+    "terminal",
+];
+
+/// Hides an option from the viewer's help if the viewer refuses it.
+pub(in crate::cli) fn hide_refused(option: Arg) -> Arg {
+    if REFUSED.contains(&option.get_id().as_str()) { option.hide(true) } else { option }
+}
 
 #[derive(Debug, clap::Parser)]
 pub(in crate::cli) struct ViewerArgs {

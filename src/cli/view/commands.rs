@@ -1,8 +1,9 @@
 //! Execution of the viewer's commands.
 
 use super::camera_control::CameraControl;
+use super::content::LookChanges;
 use super::events::{Action, Command};
-use super::viewer::{LookChanges, Viewer, WIDER};
+use super::viewer::{Viewer, WIDER};
 use glam::DVec2;
 use spherule_render::scene::{Background, Camera, Pose, Preset, Rgb, Settings};
 use spherule_render::settings::{INTEGRATORS, Names, SAMPLERS};

@@ -2,7 +2,7 @@
 
 use super::options::Options;
 use glam::DVec3;
-use spherule_render::scene::{Camera, Preset};
+use spherule_render::scene::{Background, Camera, Preset};
 
 /// Content of the viewer.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -19,6 +19,14 @@ pub(super) struct Content {
     pub(super) color: Option<String>,
     /// Preset, and the camera for its lights.
     pub(super) preset: Option<(Preset, Camera)>,
+}
+
+/// Changes of the scene's look by keys.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct LookChanges {
+    pub(super) background: Option<Background>,
+    pub(super) depth_cue: Option<bool>,
+    pub(super) outline: Option<bool>,
 }
 
 /// A plane; spheres whose centers are beyond it are hidden.

@@ -1,8 +1,7 @@
 //! Undo and redo: what a viewer showed before.
 
 use super::camera_control::CameraControl;
-use super::content::Content;
-use super::viewer::LookChanges;
+use super::content::{Content, LookChanges};
 use spherule_render::scene::Settings;
 
 /// Maximum number of states that are kept.

@@ -45,7 +45,7 @@ mod tonemap;
 mod viewer;
 mod worker;
 
-pub(super) use self::args::ViewerArgs;
+pub(super) use self::args::{ViewerArgs, hide_refused};
 
 use self::events::Command;
 use self::headless::Headless;
@@ -56,30 +56,9 @@ use super::files::{Files, STREAM};
 use super::options::appearance::BarPlace;
 use super::render::{RenderSetup, check_bar};
 use super::source::is_scene;
-use clap::Arg;
 use std::fmt::Write;
 use std::path::Path;
 use std::process::ExitCode;
-
-/// Options of `spherule render` that the viewer always refuses, and hides from its help.
-const REFUSED: [&str; 11] = [
-    "output_format",
-    "region",
-    "layers",
-    "part",
-    "split",
-    "turntable",
-    "fps",
-    "checkpoint",
-    "checkpoint_every",
-    "resume",
-    "terminal",
-];
-
-/// Hides an option from the viewer's help if the viewer refuses it.
-pub(super) fn hide_refused(option: Arg) -> Arg {
-    if REFUSED.contains(&option.get_id().as_str()) { option.hide(true) } else { option }
-}
 
 /// Returns the examples, keys and script commands at the end of `--help`.
 pub(super) fn examples() -> String {
@@ -108,7 +87,7 @@ pub(super) fn run(args: &ViewerArgs, program: &clap::Command) -> Result<ExitCode
     check_bar(&setup)?;
     let options = Options::of_process(program)?;
     let Some(path) = &args.headless_script else {
-        page::open(&setup, args, options, program)?;
+        page::open(&setup, args, options)?;
         return Ok(ExitCode::SUCCESS);
     };
     let steps = read_script(path)?;

@@ -1,11 +1,11 @@
 //! Options of the view: those of the command line, and what commands set since.
 
-use crate::cli::args::{Args, Command};
+use super::args::{ViewerArgs, hide_refused};
 use crate::cli::command_line::command_line;
 use crate::cli::failure::Failure;
 use crate::cli::help;
 use clap::parser::ValueSource;
-use clap::{Arg, ArgMatches, CommandFactory, Parser};
+use clap::{Arg, ArgMatches, Command, CommandFactory, FromArgMatches};
 use spherule_render::scene::Anchor;
 use spherule_render::suggest;
 use std::ffi::{OsStr, OsString};
@@ -35,7 +35,7 @@ impl Options {
     ///
     /// # Errors
     /// Those of parsing its command line.
-    pub(super) fn of_process(program: &clap::Command) -> Result<Self, Failure> {
+    pub(super) fn of_process(program: &Command) -> Result<Self, Failure> {
         let matches = program.clone().try_get_matches_from(command_line(program)?)?;
         let command = program.find_subcommand(COMMAND);
         match (matches.subcommand(), command) {
@@ -45,7 +45,7 @@ impl Options {
     }
 
     /// Returns the options of a command line.
-    pub(super) fn of(matches: &ArgMatches, command: &clap::Command) -> Self {
+    pub(super) fn of(matches: &ArgMatches, command: &Command) -> Self {
         let mut options = Self::default();
         for arg in command.get_arguments() {
             let id = arg.get_id().as_str();
@@ -70,11 +70,10 @@ impl Options {
     /// Returns the options of words as after `spherule view`.
     #[cfg(test)]
     pub(super) fn parse(words: &[&str]) -> Self {
-        let program = Args::command();
-        let line = ["spherule", COMMAND].iter().chain(words);
-        let matches = program.clone().try_get_matches_from(line).expect("options");
-        let (_, matches) = matches.subcommand().expect("the command");
-        Self::of(matches, program.find_subcommand(COMMAND).expect("the command"))
+        let command = command();
+        let line = std::iter::once(&COMMAND).chain(words);
+        let matches = command.clone().try_get_matches_from(line).expect("options");
+        Self::of(&matches, &command)
     }
 
     /// Sets an option to these values, once each; a flag has the value `None`. Without values it is as if it had not been
@@ -140,12 +139,10 @@ impl Options {
     ///
     /// # Errors
     /// Options contradict each other, or values cannot be understood.
-    pub(super) fn args(&self) -> Result<Box<super::ViewerArgs>, Failure> {
-        let line = [OsString::from("spherule"), COMMAND.into()].into_iter().chain(self.words());
-        match Args::try_parse_from(line)?.command {
-            Some(Command::View(args)) => Ok(args),
-            _ => Err(Failure::usage(COMMAND, "these are options of another command")),
-        }
+    pub(super) fn args(&self) -> Result<ViewerArgs, Failure> {
+        let line = std::iter::once(COMMAND.into()).chain(self.words());
+        let matches = command().try_get_matches_from(line)?;
+        Ok(ViewerArgs::from_arg_matches(&matches)?)
     }
 
     /// Returns the command that renders with these options, as one types it.
@@ -157,14 +154,18 @@ impl Options {
     }
 }
 
+/// Returns the definition of the command.
+pub(super) fn command() -> Command {
+    ViewerArgs::command().allow_negative_numbers(true).mut_args(hide_refused)
+}
+
 /// Returns whether an option has values.
 fn takes_values(arg: &Arg) -> bool {
     arg.get_action().takes_values()
 }
 
 /// Options that commands can set, by topics of the help. None of them names a file.
-pub(super) fn topics(program: &clap::Command) -> Vec<(&'static str, Vec<&Arg>)> {
-    let Some(command) = program.find_subcommand(COMMAND) else { return Vec::new() };
+pub(super) fn topics(command: &Command) -> Vec<(&'static str, Vec<&Arg>)> {
     let path = clap::builder::ValueParser::path_buf().type_id();
     let can_set = |arg: &&Arg| {
         !FIXED.contains(&arg.get_id().as_str())
@@ -182,8 +183,8 @@ pub(super) fn topics(program: &clap::Command) -> Vec<(&'static str, Vec<&Arg>)> 
 
 /// Refuses the name of an option that a view cannot change.
 fn check(name: &str) -> Result<(), Failure> {
-    let program = Args::command();
-    let topics = topics(&program);
+    let command = command();
+    let topics = topics(&command);
     let names = || topics.iter().flat_map(|(_, args)| args).filter_map(|arg| arg.get_long());
     if names().any(|own| own == name) {
         return Ok(());

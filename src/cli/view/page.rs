@@ -30,14 +30,13 @@ pub(super) fn open(
     setup: &RenderSetup,
     args: &ViewerArgs,
     options: Options,
-    program: &clap::Command,
 ) -> Result<(), Failure> {
     let name = args.address.as_deref().unwrap_or(LOOPBACK);
     let listener = listen(name, args.port.unwrap_or(0))?;
     let at = listener.local_addr().map_err(|error| Failure::View(format!("{name}: {error}")))?;
     let token = token()?;
     let (sender, inputs) = sync_channel::<Input>(WAITING);
-    let host = Host::start(setup, options, greeting(program), &sender)?;
+    let host = Host::start(setup, options, greeting(), &sender)?;
     announce(name, at, &token, args.no_browser);
     let door = Arc::new(Door { token, address: name.to_owned() });
     thread::spawn(move || serve(&listener, &door, &sender));

@@ -1,7 +1,7 @@
 //! What a page is told: the state of the viewer, and once the commands and options that there are.
 
 use super::keys;
-use super::options::{Options, topics};
+use super::options::{Options, command, topics};
 use super::python;
 use super::script::COMMANDS;
 use super::viewer::Viewer;
@@ -21,8 +21,9 @@ const COLORS: u32 = 64;
 const TICKS: usize = 6;
 
 /// Returns what does not change: keys, commands, and options by topics.
-pub(super) fn greeting(program: &clap::Command) -> String {
-    let topics: Vec<Value> = topics(program)
+pub(super) fn greeting() -> String {
+    let command = command();
+    let topics: Vec<Value> = topics(&command)
         .into_iter()
         .map(|(topic, args)| json!([topic, args.into_iter().map(option).collect::<Vec<_>>()]))
         .collect();

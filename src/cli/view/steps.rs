@@ -1,9 +1,10 @@
 //! Execution of the steps of scripts and pages.
 
+use super::content::LookChanges;
 use super::events::{Action, Button, Event, Modifiers, Purpose};
 use super::history::State;
 use super::script::Step;
-use super::viewer::{LookChanges, Viewer};
+use super::viewer::Viewer;
 use crate::cli::failure::Failure;
 use crate::cli::help;
 use glam::DVec2;

@@ -2,7 +2,7 @@
 //! threads or files, so that a page, a script and a test behave in the same way.
 
 use super::camera_control::CameraControl;
-use super::content::{Content, CutPlane};
+use super::content::{Content, CutPlane, LookChanges};
 use super::events::{Action, Button, Event, Modifiers, Purpose};
 use super::frame_rate::FrameRate;
 use super::history::History;
@@ -13,7 +13,7 @@ use super::tonemap::{DisplaySettings, ToneMapper};
 use glam::DVec2;
 use spherule_render::elementary::pow;
 use spherule_render::scene::particles::{Legend, Orientation};
-use spherule_render::scene::{Background, Camera, Denoise, Look, Preset, Settings};
+use spherule_render::scene::{Camera, Denoise, Look, Preset, Settings};
 use std::sync::Arc;
 
 /// Minimum and maximum side of the image in pixels.
@@ -64,14 +64,6 @@ pub(super) struct Facts {
     /// The color scale, if colors represent numbers, and whether the image has its own color bar.
     pub(super) legend: Option<Legend>,
     pub(super) color_bar: bool,
-}
-
-/// Changes of the scene's look by keys.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct LookChanges {
-    pub(super) background: Option<Background>,
-    pub(super) depth_cue: Option<bool>,
-    pub(super) outline: Option<bool>,
 }
 
 /// Current action of the pointer.
