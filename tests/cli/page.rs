@@ -247,7 +247,10 @@ fn commands_change_the_view_and_bad_ones_are_refused() {
 fn one_page_steers_and_others_look() {
     let folder = Folder::new();
     let server = Server::start(&folder, &["--spp", "1"]);
-    let (mut first, mut second) = (server.page(), server.page());
+    // The page that is there first steers.
+    let mut first = server.page();
+    first.until(|state| state["pages"] == 1);
+    let mut second = server.page();
     first.send("size 40x30");
     let sent = first.image(|header| is_finished(header) && header["width"] == 40);
     assert_eq!(sent.header["kind"], "image/png");

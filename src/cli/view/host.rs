@@ -193,13 +193,30 @@ impl Host {
             return Ok(());
         }
         self.heard += u64::from(!looks);
+        let resized = matches!(step, Step::Size(..));
         for step in step.parts() {
             let action = self.viewer.step(&step).map_err(|failure| brief(&failure))?;
             if let Some(action) = action {
                 self.act(number, &action)?;
             }
         }
+        if resized {
+            self.fit();
+        }
         Ok(())
+    }
+
+    /// Frames everything in an image of another shape, unless the camera was moved.
+    fn fit(&mut self) {
+        let viewer = &mut self.viewer;
+        if let Some(scene) = &self.scene
+            && viewer.facts.framed
+            && viewer.control.camera == viewer.home
+        {
+            session::frame(viewer, scene, None);
+            viewer.home = viewer.control.camera.clone();
+            viewer.history.amend(viewer.state());
+        }
     }
 
     fn act(&mut self, number: u64, action: &Action) -> Result<(), String> {
@@ -269,18 +286,19 @@ impl Host {
     fn set(&mut self, stage: LoadedScene) {
         let new = stage.warnings.iter().filter(|text| self.warned.insert((*text).clone()));
         new.for_each(output::warn);
-        if self.scene.is_none() {
+        let before = self.scene.replace(Arc::clone(&stage.scene));
+        if before.is_none() {
             let Settings { width, height, .. } = self.viewer.settings;
             session::begin(&mut self.viewer, &stage);
             let settings = &mut self.viewer.settings;
             (settings.width, settings.height) = (width, height);
+            self.fit();
         } else {
             session::set(&mut self.viewer, &stage);
         }
         if let Some(warning) = stage.warnings.first() {
             self.viewer.show_message(warning.clone());
         }
-        self.scene = Some(Arc::clone(&stage.scene));
         self.origin.clone_from(&stage.origin);
         self.loaded.clone_from(&stage.content);
         self.fallback = None;

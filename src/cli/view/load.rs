@@ -18,7 +18,7 @@ use spherule_render::scene::particles::{
     ParticleFrame, ParticleStyle, Particles, ReadOptions, ReadProgress, Role, Selection,
     TrajectoryReader, count_frames,
 };
-use spherule_render::scene::{Rgb, Scene, Spheres};
+use spherule_render::scene::{Pose, Rgb, Scene, Spheres};
 use spherule_render::world::framing;
 use std::collections::HashSet;
 use std::fs::Metadata;
@@ -281,6 +281,10 @@ impl Loader {
         compose::place(&request, &mut staged, None, None).map_err(|fault| setup.refuse(fault))?;
         let Staged { mut scene, labels, legend, orientation, .. } = staged;
         let failed = |error| Failure::World(setup.source.name().into_owned(), error);
+        let camera = &setup.request.camera;
+        let framed = matches!(scene.camera.pose, Pose::Fit { .. })
+            && (camera.look_at.is_none() && camera.zoom.is_none() && camera.margin.is_none())
+            && setup.request.style.framed.is_none();
         framing::include_points(&mut scene, &[]).map_err(failed)?;
         let count = scene.spheres.len();
         let facts = Facts {
@@ -288,6 +292,7 @@ impl Loader {
             spheres: count,
             types: labels.kinds.table.iter().map(|kind| kind.name.clone()).collect(),
             size: size(&scene),
+            framed,
             lit_from: request.lit_from.clone().unwrap_or_else(|| scene.camera.clone()),
             look: scene.look,
             settings: scene.settings.clone(),

@@ -41,6 +41,7 @@ mod state;
 mod steps;
 mod tiles;
 mod times;
+mod token;
 mod tonemap;
 mod viewer;
 mod worker;

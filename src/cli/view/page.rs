@@ -6,6 +6,7 @@ use super::http::Door;
 use super::listen::serve;
 use super::options::Options;
 use super::state::greeting;
+use super::token::token;
 use crate::cli::failure::Failure;
 use crate::cli::output;
 use crate::cli::render::RenderSetup;
@@ -34,9 +35,9 @@ pub(super) fn open(
     let name = args.address.as_deref().unwrap_or(LOOPBACK);
     let listener = listen(name, args.port.unwrap_or(0))?;
     let at = listener.local_addr().map_err(|error| Failure::View(format!("{name}: {error}")))?;
-    let token = token()?;
+    let token = token(args.port.filter(|port| *port > 0))?;
     let (sender, inputs) = sync_channel::<Input>(WAITING);
-    let host = Host::start(setup, options, greeting(), &sender)?;
+    let host = Host::start(setup, options, greeting()?, &sender)?;
     announce(name, at, &token, args.no_browser);
     let door = Arc::new(Door { token, address: name.to_owned() });
     thread::spawn(move || serve(&listener, &door, &sender));
@@ -59,14 +60,6 @@ fn listen(name: &str, port: u16) -> Result<TcpListener, Failure> {
     };
     let places: Vec<SocketAddr> = (name, port).to_socket_addrs().map_err(failed)?.collect();
     TcpListener::bind(&places[..]).map_err(failed)
-}
-
-/// Returns 128 random bits in digits.
-fn token() -> Result<String, Failure> {
-    let mut bytes = [0; 16];
-    getrandom::fill(&mut bytes)
-        .map_err(|error| Failure::View(format!("no random numbers for the address: {error}")))?;
-    Ok(format!("{:032x}", u128::from_be_bytes(bytes)))
 }
 
 /// Prints the address, and opens it in a browser where there is a display.

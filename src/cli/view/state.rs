@@ -4,7 +4,9 @@ use super::keys;
 use super::options::{Options, command, topics};
 use super::python;
 use super::script::COMMANDS;
+use super::token::token;
 use super::viewer::Viewer;
+use crate::cli::failure::Failure;
 use crate::cli::help;
 use clap::Arg;
 use serde_json::{Map, Value, json};
@@ -20,23 +22,27 @@ const COLORS: u32 = 64;
 /// Maximum number of ticks of a color bar.
 const TICKS: usize = 6;
 
-/// Returns what does not change: keys, commands, and options by topics.
-pub(super) fn greeting() -> String {
+/// Returns what does not change: a name of the session, keys, commands, and options by topics.
+///
+/// # Errors
+/// The system has no random numbers.
+pub(super) fn greeting() -> Result<String, Failure> {
     let command = command();
     let topics: Vec<Value> = topics(&command)
         .into_iter()
         .map(|(topic, args)| json!([topic, args.into_iter().map(option).collect::<Vec<_>>()]))
         .collect();
-    json!({
+    let greeting = json!({
         "hello": {
+            "session": token(None)?,
             "version": env!("CARGO_PKG_VERSION"),
             "keys": keys::HELP.as_slice(),
             "bindings": keys::BINDINGS.map(|(key, _)| key).as_slice(),
             "commands": COMMANDS.as_slice(),
             "topics": topics,
         }
-    })
-    .to_string()
+    });
+    Ok(greeting.to_string())
 }
 
 /// Describes an option.

@@ -50,6 +50,8 @@ pub(super) struct Facts {
     pub(super) frames: Option<u64>,
     /// Radius of the bounding sphere of the scene.
     pub(super) size: f64,
+    /// True if the camera frames everything.
+    pub(super) framed: bool,
     /// The camera that the preset's lights follow.
     pub(super) lit_from: Camera,
     /// The scene's look and settings.

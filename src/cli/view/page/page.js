@@ -49,15 +49,37 @@ function connect(wait = 250) {
 /** Handles a message of text. */
 function receive(message) {
   if (message.hello) {
+    const before = hello?.session;
     hello = message.hello;
-    build();
+    if (before && before !== hello.session) restored = state;
+    if (before !== hello.session) build();
   }
   if (message.state) {
+    if (restored && !message.state.busy && !message.state.loading && message.state.title) restore(message.state);
     state = message.state;
     tell();
   }
   if ("hover" in message) showTip(message.hover);
   if (message.error) refuse(message.error);
+}
+
+/** The view that a program had that was started again since. */
+let restored = null;
+
+/** Brings the view back. */
+function restore(now) {
+  const before = restored;
+  restored = null;
+  if (before.title !== now.title) return;
+  const same = (name) => JSON.stringify(before.options[name]) === JSON.stringify(now.options[name]);
+  for (const name of new Set([...Object.keys(before.options), ...Object.keys(now.options)])) {
+    if (same(name)) continue;
+    const values = before.options[name];
+    send(values ? `set ${name} ${values.map((value) => (value == null ? "" : quoted(value))).join(" ")}`.trimEnd() : `unset ${name}`);
+  }
+  if (before.frame !== now.frame) send(`frame ${before.frame}`);
+  for (const name of before.hidden) send(`hide ${quoted(name)}`);
+  send(`camera ${quoted(before.camera.line)}`);
 }
 
 /** Handles a message of a header and files: an image in tiles, or a file to keep. */
