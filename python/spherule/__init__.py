@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from ._scene import Scene
     from ._tree import GROUND, NOTHING, Hits, SphereTree
     from .friends import from_ase, from_gsd, from_mdanalysis, from_ovito, from_pandas
+    from .structures import from_mdtraj, from_pymatgen
 
 __version__ = "0.1.0"
 
@@ -36,6 +37,7 @@ _PLACES = {
     "_scene": ("Scene",),
     "_tree": ("GROUND", "NOTHING", "Hits", "SphereTree"),
     "friends": ("from_ase", "from_gsd", "from_mdanalysis", "from_ovito", "from_pandas"),
+    "structures": ("from_mdtraj", "from_pymatgen"),
 }
 
 __all__ = [
@@ -56,8 +58,10 @@ __all__ = [
     "from_ase",
     "from_gsd",
     "from_mdanalysis",
+    "from_mdtraj",
     "from_ovito",
     "from_pandas",
+    "from_pymatgen",
     "level",
     "movie",
     "read",

@@ -13,6 +13,7 @@ from ._particles import Particles, frames as frames_of_file
 from ._progress import Report, reporting
 from ._render import rendered
 from ._scene import Scene, file_options
+from .structures import from_mdtraj
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -120,6 +121,20 @@ class _Trajectory:
             yield self.group
 
 
+class _Slices:
+    """The frames of an mdtraj Trajectory."""
+
+    def __init__(self, trajectory: Any) -> None:
+        self.trajectory = trajectory
+
+    def __len__(self) -> int:
+        return len(self.trajectory)
+
+    def __iter__(self) -> Iterator[Particles]:
+        for frame in range(len(self.trajectory)):
+            yield from_mdtraj(self.trajectory, frame)
+
+
 class _File:
     """The frames of a particle file."""
 
@@ -139,6 +154,8 @@ def _passes(frames: Any, looks: dict[str, Any]) -> Iterable[Any]:
         return _File(name, looks)
     if hasattr(frames, "atoms") and hasattr(getattr(frames, "universe", None), "trajectory"):
         return _Trajectory(frames)
+    if hasattr(frames, "unitcell_vectors"):
+        return _Slices(frames)
     if isinstance(frames, (Scene, Particles)) or not hasattr(frames, "__iter__"):
         raise Error(f"`frames` is {_values.shown(frames)}, but must be a list or another iterable of frames, or a file")
     return frames  # type: ignore[no-any-return]

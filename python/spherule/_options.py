@@ -108,7 +108,7 @@ STYLE = frozenset(
     "values radius_scale select colors color_by color_map color_range color_title color_log color_bar "
     "label_of_values types model bonds bond_radius polyhedra polyhedra_opacity opacity translucent hide styles "
     "arrows arrow_scale arrow_radius arrow_color arrow_center "
-    "preset background view look_at zoom roll up wrap replicate complete outside show_cell slices slice_mode".split()
+    "preset background view look_at zoom roll up wrap replicate complete outside show_cell slices slice_mode triangles".split()
 )
 
 #: Sections of scene files; the color bar is one, too, if it is a dict.

@@ -18,7 +18,7 @@ _PATIENCE = 0.5
 _PAUSE = 3.0
 
 
-def _in_notebook() -> bool:
+def in_notebook() -> bool:
     shell = sys.modules.get("IPython")
     if shell is None:
         return False
@@ -35,7 +35,7 @@ def reporting(progress: bool | Report | None) -> Iterator[Report | None]:
     if progress is not None:
         progress = _values.flag("progress", progress)
     else:
-        progress = _in_notebook() or sys.stderr.isatty()
+        progress = in_notebook() or sys.stderr.isatty()
     if not progress:
         yield None
         return

@@ -439,11 +439,11 @@ def _style(given: Mapping[str, Any]) -> dict[str, Any]:
         raise Error("`polyhedra_opacity` needs `polyhedra`")
     style.update(_arrows(given))
     style["bond_radius"] = _optional(given, "bond_radius", _values.number)
-    styles = _styles(given.get("styles"))
+    styles = style_texts(given.get("styles"))
     return {**style, "color_range": ends, "color_log": color_log, "types": types, "styles": styles}
 
 
-def _styles(styles: Any) -> list[tuple[str, tuple[float, ...] | None]]:
+def style_texts(styles: Any) -> list[tuple[str, tuple[float, ...] | None]]:
     """The styles of selections as texts of the program's option ``--style``, and the color that replaces theirs."""
     if styles is None:
         return []

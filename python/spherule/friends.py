@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from ._attributes import components, need, optional
 from ._errors import Error, from_call
 from ._particles import Particles
+from .structures import from_mdtraj, from_pymatgen
 
 #: Names of columns of data frames, by role.
 _COORDINATES = (
@@ -17,13 +19,6 @@ _COORDINATES = (
     ("x_coord", "y_coord", "z_coord"),
 )
 _KINDS = ("type", "element", "element_symbol", "species", "kind", "atom_name")
-
-
-def _need(thing: Any, name: str, what: str) -> Any:
-    try:
-        return getattr(thing, name)
-    except AttributeError:
-        raise Error(f"expected {what}, but {type(thing).__name__} has no `{name}`") from None
 
 
 @from_call
@@ -45,20 +40,20 @@ def from_ase(atoms: Any) -> Particles:
     import numpy as np
 
     what = "ase.Atoms"
-    positions = _need(atoms, "positions", what)
-    symbols = _need(atoms, "get_chemical_symbols", what)()
-    cell = np.asarray(_need(atoms, "cell", what)[:])
+    positions = need(atoms, "positions", what)
+    symbols = need(atoms, "get_chemical_symbols", what)()
+    cell = np.asarray(need(atoms, "cell", what)[:])
     columns = {}
     for name, values in getattr(atoms, "arrays", {}).items():
         if name not in ("positions", "numbers"):
-            columns.update(_components(name, values))
+            columns.update(components(name, values))
     has_cell = bool(abs(np.linalg.det(cell)) > 0)
     return Particles(
         positions,
         kinds=symbols,
         columns=columns,
         cell=cell if has_cell else None,
-        periodic=np.asarray(_need(atoms, "pbc", what)),
+        periodic=np.asarray(need(atoms, "pbc", what)),
         unit="angstrom",
     )
 
@@ -88,10 +83,10 @@ def from_mdanalysis(group: Any) -> Particles:
 
     from . import _native
 
-    atoms = _need(group, "atoms", "an MDAnalysis Universe or AtomGroup")
+    atoms = need(group, "atoms", "an MDAnalysis Universe or AtomGroup")
     kinds = elements = None
     for name in ("elements", "types", "names"):
-        values = _optional(atoms, name)
+        values = optional(atoms, name)
         if values is not None and any(str(value) for value in values):
             kinds = [str(value) for value in values]
             break
@@ -103,31 +98,32 @@ def from_mdanalysis(group: Any) -> Particles:
         ("names", "name"),
         ("resnames", "resname"),
         ("resids", "resid"),
+        ("chainIDs", "chain"),
         ("segids", "segid"),
         ("charges", "charge"),
         ("masses", "mass"),
     ):
-        values = _optional(atoms, name)
+        values = optional(atoms, name)
         if values is not None:
             columns[column] = values
-    box = _optional(atoms, "dimensions")
+    box = optional(atoms, "dimensions")
     has_cell = box is not None and bool(np.all(np.asarray(box)[:3] > 0))
-    timestep = _optional(_optional(atoms, "universe"), "trajectory")
+    timestep = optional(optional(atoms, "universe"), "trajectory")
     # Rows of the universe as rows of the group; bonds to atoms outside of it are left out.
-    bonds = _optional(_optional(atoms, "bonds"), "indices")
+    bonds = optional(optional(atoms, "bonds"), "indices")
     if bonds is not None:
         places = {int(index): row for row, index in enumerate(atoms.indices)}
         bonds = [(places[a], places[b]) for a, b in np.asarray(bonds).tolist() if a in places and b in places]
     return Particles(
-        _need(atoms, "positions", "an MDAnalysis Universe or AtomGroup"),
+        need(atoms, "positions", "an MDAnalysis Universe or AtomGroup"),
         kinds=kinds,
         elements=elements,
         columns=columns,
         bonds=bonds,
         cell=box if has_cell else None,
         unit="angstrom",
-        step=_optional(timestep, "frame"),
-        time=_optional(timestep, "time"),
+        step=optional(timestep, "frame"),
+        time=optional(timestep, "time"),
     )
 
 
@@ -157,7 +153,7 @@ def from_ovito(data: Any) -> Particles:
 
     from . import _native
 
-    found = _need(data, "particles", "an OVITO DataCollection")
+    found = need(data, "particles", "an OVITO DataCollection")
     if found is None:
         raise Error("the OVITO DataCollection has no particles")
     properties = {name: found[name] for name in found.keys()}
@@ -169,12 +165,12 @@ def from_ovito(data: Any) -> Particles:
     if "Particle Type" in properties:
         property = properties["Particle Type"]
         distinct, rows = np.unique(np.asarray(property), return_inverse=True)
-        types = {int(kind.id): kind for kind in _optional(property, "types") or ()}
+        types = {int(kind.id): kind for kind in optional(property, "types") or ()}
         styles = [types.get(int(code)) for code in distinct]
-        names = [str(_optional(style, "name") or code) for code, style in zip(distinct, styles)]
+        names = [str(optional(style, "name") or code) for code, style in zip(distinct, styles)]
         kinds = np.array(names, np.str_)[rows]
         elements = [_native.element_of(name) for name in dict.fromkeys(kinds.tolist())]
-        radius = np.array([float(_optional(style, "radius") or 0.0) for style in styles])[rows]
+        radius = np.array([float(optional(style, "radius") or 0.0) for style in styles])[rows]
         known = [style for style in styles if style is not None]
         if count and len(known) == len(styles):
             color = np.array([style.color for style in known])[rows]
@@ -186,7 +182,7 @@ def from_ovito(data: Any) -> Particles:
     columns = {}
     for name, property in properties.items():
         if name not in ("Position", "Particle Type", "Radius", "Color"):
-            columns.update(_components(name, np.asarray(property)))
+            columns.update(components(name, np.asarray(property)))
     semi_axes = orientation = None
     if "Aspherical Shape" in properties and np.asarray(properties["Aspherical Shape"]).any():
         semi_axes = np.asarray(properties["Aspherical Shape"], np.float64)
@@ -196,17 +192,17 @@ def from_ovito(data: Any) -> Particles:
             orientation = np.asarray(properties["Orientation"], np.float64)[:, [3, 0, 1, 2]]
             orientation = np.where(orientation.any(axis=1, keepdims=True), orientation, [1.0, 0.0, 0.0, 0.0])
     bonds = shifts = None
-    listed = _optional(found, "bonds")
+    listed = optional(found, "bonds")
     if listed is not None and "Topology" in listed.keys():
         bonds = np.asarray(listed["Topology"])
         if "Periodic Image" in listed.keys():
             shifts = np.asarray(listed["Periodic Image"])
-    cell = _optional(data, "cell")
+    cell = optional(data, "cell")
     matrix = None if cell is None else np.asarray(cell)
     if matrix is not None and not abs(np.linalg.det(matrix[:, :3])) > 0:
         # That of a plane.
         cell = matrix = None
-    attributes = _optional(data, "attributes") or {}
+    attributes = optional(data, "attributes") or {}
     return Particles(
         np.asarray(properties["Position"]),
         kinds=kinds,
@@ -250,25 +246,25 @@ def from_gsd(frame: Any) -> Particles:
     import numpy as np
 
     what = "a gsd.hoomd frame"
-    particles = _need(frame, "particles", what)
-    configuration = _need(frame, "configuration", what)
-    positions = _need(particles, "position", what)
+    particles = need(frame, "particles", what)
+    configuration = need(frame, "configuration", what)
+    positions = need(particles, "position", what)
     if positions is None:
         raise Error("the frame of gsd has no positions")
     count = len(positions)
-    names, codes = _optional(particles, "types"), _optional(particles, "typeid")
+    names, codes = optional(particles, "types"), optional(particles, "typeid")
     kinds = None
     if names is not None and codes is not None:
         kinds = [names[int(code)] for code in codes]
-    diameter = _optional(particles, "diameter")
+    diameter = optional(particles, "diameter")
     columns: dict[str, Any] = {}
     for name in ("mass", "charge", "body", "velocity", "image", "angmom", "orientation", "moment_inertia"):
-        values = _optional(particles, name)
+        values = optional(particles, name)
         if values is not None and len(values) == count:
-            columns.update(_components(name, values))
+            columns.update(components(name, values))
     radius = None if diameter is None or len(diameter) != count else np.asarray(diameter, np.float64) / 2
     semi_axes = None
-    described = _optional(particles, "type_shapes")
+    described = optional(particles, "type_shapes")
     if described and codes is not None:
         ellipsoids = [shape if shape.get("type") == "Ellipsoid" else {} for shape in described]
         each = np.array([[float(shape.get(axis, 0.0)) for axis in "abc"] for shape in ellipsoids])
@@ -278,11 +274,11 @@ def from_gsd(frame: Any) -> Particles:
             semi_axes = each[np.asarray(codes, np.int64)]
             if radius is not None:
                 radius = np.where(semi_axes.any(axis=1), semi_axes.max(axis=1), radius)
-    orientation = _optional(particles, "orientation")
-    bonds = _optional(_optional(frame, "bonds"), "group")
+    orientation = optional(particles, "orientation")
+    bonds = optional(optional(frame, "bonds"), "group")
     cell, origin = None, np.zeros(3)
     periodic: bool | tuple[bool, bool, bool] = True
-    box = _optional(configuration, "box")
+    box = optional(configuration, "box")
     if box is not None:
         lx, ly, lz, xy, xz, yz = (float(value) for value in box)
         # HOOMD-blue, "Periodic boundary conditions": the box is centered at the origin.
@@ -302,7 +298,7 @@ def from_gsd(frame: Any) -> Particles:
         cell=cell,
         origin=origin,
         periodic=periodic,
-        step=_optional(configuration, "step"),
+        step=optional(configuration, "step"),
     )
 
 
@@ -337,7 +333,7 @@ def from_pandas(
     """
     import numpy as np
 
-    names = [str(name) for name in _need(frame, "columns", "a pandas DataFrame")]
+    names = [str(name) for name in need(frame, "columns", "a pandas DataFrame")]
     if positions is None:
         positions = next((triple for triple in _COORDINATES if set(triple) <= set(names)), None)
         if positions is None:
@@ -374,40 +370,27 @@ def from_pandas(
     )
 
 
-def _optional(thing: Any, name: str) -> Any:
-    """An attribute, or None; packages raise errors of their own for those that a topology lacks."""
-    try:
-        return getattr(thing, name)
-    except Exception:  # noqa: BLE001
-        return None
-
-
-def _components(name: str, values: Any) -> dict[str, Any]:
-    """Columns of a property, as the readers name its components."""
-    import numpy as np
-
-    array = np.asarray(values)
-    if array.ndim == 1:
-        return {name: array}
-    if array.ndim != 2 or array.dtype.kind not in "fiub":
-        return {}
-    width = array.shape[1]
-    parts = "xyz" if width == 3 else [str(part + 1) for part in range(width)]
-    return {f"{name}_{part}": array[:, row] for row, part in enumerate(parts)}
+#: Packages by the attributes that only their objects have, in the order in which these are looked for.
+_FRIENDS = (
+    ("get_chemical_symbols", from_ase),
+    ("unitcell_vectors", from_mdtraj),
+    ("cart_coords", from_pymatgen),
+    ("atoms", from_mdanalysis),
+)
 
 
 def particles_of(thing: Any) -> Any:
     """The particles of an object of another package, by the attributes that only these have; anything else as it is."""
-    has = {name for name in ("get_chemical_symbols", "atoms", "trajectory", "particles", "iloc") if hasattr(thing, name)}
-    if isinstance(thing, Particles) or not has:
+    if isinstance(thing, Particles):
         return thing
-    if "get_chemical_symbols" in has:
-        return from_ase(thing)
-    if "atoms" in has:
-        return from_mdanalysis(thing)
-    if "iloc" in has:
+    for name, taken in _FRIENDS:
+        if hasattr(thing, name):
+            return taken(thing)
+    if hasattr(thing, "iloc"):
         names = {str(name) for name in getattr(thing, "columns", ())}
         return from_pandas(thing) if any(names.issuperset(own) for own in _COORDINATES) else thing
-    if hasattr(thing.particles, "keys"):
-        return from_ovito(thing)
-    return from_gsd(thing) if hasattr(thing.particles, "position") else thing
+    if hasattr(thing, "particles"):
+        if hasattr(thing.particles, "keys"):
+            return from_ovito(thing)
+        return from_gsd(thing) if hasattr(thing.particles, "position") else thing
+    return thing

@@ -18,6 +18,7 @@ def pixels(**options):
 def test_an_array_is_what_sections_are():
     sections = [dict(zip("abc", corners.tolist())) for corners in CORNERS]
     assert np.array_equal(pixels(triangles=CORNERS), pixels(triangle=sections))
+    assert np.array_equal(pixels(triangles=CORNERS), spherule.render(triangles=CORNERS, **VIEW).pixels)
     red = [{**section, "color": "red"} for section in sections]
     assert np.array_equal(pixels(triangles={"corners": CORNERS, "color": "red"}), pixels(triangle=red))
     assert not np.array_equal(pixels(triangles=CORNERS), pixels(triangle=red))
