@@ -4,7 +4,7 @@
     >>> picture = spherule.render([[0, 0, 0], [1, 0, 0]], radius=0.5, size=(80, 60), spp=4)
 
 :func:`render` makes a picture of positions, :func:`movie` a video of a trajectory, and :class:`Scene` says how. :func:`read` reads particle files into NumPy
-columns; :func:`from_ase` and its kin take the structures of other packages. :class:`SphereTree` answers which sphere a
+columns; :func:`from_ase` and its kin take the structures of other packages, :func:`from_pyvista` a plotter. :class:`SphereTree` answers which sphere a
 ray hits first.
 """
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from ._native import Stop
     from ._particles import Particles, count_frames, frames, read
     from ._picture import Picture
+    from ._pyvista import from_pyvista
     from ._render import refine, render, render_async
     from ._scene import Scene
     from ._tree import GROUND, NOTHING, Hits, SphereTree
@@ -33,6 +34,7 @@ _PLACES = {
     "_native": ("Stop",),
     "_particles": ("Particles", "count_frames", "frames", "read"),
     "_picture": ("Picture",),
+    "_pyvista": ("from_pyvista",),
     "_render": ("refine", "render", "render_async"),
     "_scene": ("Scene",),
     "_tree": ("GROUND", "NOTHING", "Hits", "SphereTree"),
@@ -62,6 +64,7 @@ __all__ = [
     "from_ovito",
     "from_pandas",
     "from_pymatgen",
+    "from_pyvista",
     "level",
     "movie",
     "read",
