@@ -94,12 +94,19 @@ def _words(options: Mapping[str, Any]) -> list[str]:
     for name, value in options.items():
         option = "--" + _OPTIONS.get(name, name).replace("_", "-")
         if name == "styles":
-            values = [text for text, color in _scene.style_texts(value) if color is None]
+            texts = _scene.style_texts(value)
+            if any(color is not None for _, color in texts):
+                raise Error("`styles` has a color that is numbers, but for the viewer must have names or #rrggbb")
+            values = [text for text, _ in texts]
+        elif name == "complete" and isinstance(value, bool):
+            values = ["yes" if value else "no"]
         elif value is None or value is False:
             continue
         elif value is True:
             words.append(option)
             continue
+        elif name == "size" and isinstance(value, (list, tuple)):
+            values = ["x".join(str(item) for item in value)]
         elif isinstance(value, (list, tuple)) and name in ("slices", "label", "polyhedra"):
             values = [_values.text(name, item) for item in value]
         elif isinstance(value, (list, tuple)):
@@ -122,7 +129,9 @@ def _run(name: str, command: str, options: Sequence[str]) -> int:
         signal.signal(signal.SIGTERM, lambda *_: process.terminate())
         while True:
             try:
-                return process.wait()
+                code = process.wait()
+                # As shells have the signal that ended it.
+                return code if code >= 0 else 128 - code
             except KeyboardInterrupt:
                 # It has the interrupt of the terminal, too, and ends by it.
                 continue

@@ -52,11 +52,14 @@ def fake(tmp_path, monkeypatch):
 def test_ase_views_in_the_page(fake, water):
     from ase.visualize import view
 
-    process = view([water, water], viewer="spherule", model="ball-and-stick", show_cell=True, slices=["x > 1", "y > 2"])
+    process = view([water, water], viewer="spherule", model="ball-and-stick", show_cell=True, slices=["x > 1", "y > 2"],
+        size=(80, 60), complete=False, color_log=False, styles={"element O": {"color": "red"}}, view=(30, 20),
+    )  # fmt: skip
     assert process.wait(60) == 0
     command, file, *options = (fake / "said").read_text().split("\n")[:-1]
     assert command == "view" and os.path.basename(file) == "H2O.xyz"
-    assert options == ["--model=ball-and-stick", "--cell", "--slice=x > 1", "--slice=y > 2"]
+    assert options == ["--model=ball-and-stick", "--cell", "--slice=x > 1", "--slice=y > 2", "--size=80x60", "--complete=no",
+        "--style=element O: color=red", "--view=30,20"]  # fmt: skip
     # The file is there while the viewer is.
     assert not os.path.exists(os.path.dirname(file))
     (fake / "again.xyz").write_bytes((fake / "shown").read_bytes())
@@ -71,6 +74,7 @@ def test_ase_says_what_it_cannot_view(fake, water):
         (water, {"data": np.zeros((2, 2, 2))}, "`data`"),
         ([], {}, "empty"),
         (water, {"color_map": object()}, "`color_map`"),
+        (water, {"styles": {"element O": {"color": (1, 0, 0)}}}, "`styles`"),
     ):
         with pytest.raises(spherule.Error, match=message):
             view(atoms, viewer="spherule", **options)
