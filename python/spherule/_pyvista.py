@@ -227,29 +227,28 @@ class _Bodies:
         if not len(faces):
             return
         corners = _Corners(mesh, plain, of_cells)
-        colors = corners.colors(faces, np.arange(len(faces)))
         found = _meshes.parts(points, faces)
         of_face = found.run[faces[:, 0]]
         if found.is_sphere.any():
             # The first face is as good as any: a glyph has one color.
-            _, face = np.unique(of_face, return_index=True)
-            first = np.zeros(len(found.first), np.intp)
-            first[of_face[face]] = face
-            rows = found.is_sphere
-            self.spheres.append((found.centers[rows], found.radii[rows], colors[first[rows]]))
+            runs, face = np.unique(of_face, return_index=True)
+            face = face[found.is_sphere[runs]]
+            runs = of_face[face]
+            self.spheres.append((found.centers[runs], found.radii[runs], corners.colors(faces[face], face)))
         for tube in found.tubes:
             start = found.first[tube.run]
             rings = start + np.arange(len(tube.axis))[:, None] * tube.sides + np.arange(tube.sides)
             ends = np.stack([tube.axis[:-1], tube.axis[1:]], axis=1)
             if of_cells:
-                each = np.broadcast_to(colors[of_face == tube.run][0], (len(ends), 2, 4))
+                face = np.flatnonzero(of_face == tube.run)[:1]
+                each = np.broadcast_to(corners.colors(faces[face], face), (len(ends), 2, 4))
             else:
                 of_ring = corners.colors(rings, None)
                 each = np.stack([of_ring[:-1], of_ring[1:]], axis=1)
             self.sticks.append((ends, np.full(len(ends), tube.radius), each))
-        rest = ~found.is_taken[of_face]
-        if rest.any():
-            self.triangles.append((points[faces[rest]], colors[rest]))
+        rest = np.flatnonzero(~found.is_taken[of_face])
+        if len(rest):
+            self.triangles.append((points[faces[rest]], corners.colors(faces[rest], rest)))
 
     def sections(self) -> dict[str, Any]:
         """The particles and sections of all bodies; empty if there is none."""

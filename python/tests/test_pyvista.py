@@ -132,6 +132,12 @@ def test_faces_have_colors_and_opacity(plotter, tmp_path):
     assert text.count("[[triangle]]") == 4 and text.count("[[stick]]") == 12
     assert text.count("opacity = 0.5") == 1
     plotter.clear_actors()
+    line = pv.Line((0, 0, 0), (1, 0, 0), resolution=2)
+    line["v"] = [0.0, 0.5, 1.0]
+    plotter.add_mesh(line.tube(radius=0.1, n_sides=12), scalars="v", cmap=["red", "blue"], show_scalar_bar=False)
+    text = saved(spherule.from_pyvista(plotter), tmp_path)
+    assert "colors = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]" in text and "colors = [[0.0, 0.0, 1.0], [0.0, 0.0, 1.0]]" in text
+    plotter.clear_actors()
     points = pv.PolyData(RNG.random((3, 3)))
     plotter.add_points(points, opacity=0.4, color="red")
     assert len(spherule.from_pyvista(plotter)) == 3
