@@ -3,7 +3,8 @@
     >>> import spherule
     >>> picture = spherule.render([[0, 0, 0], [1, 0, 0]], radius=0.5, size=(80, 60), spp=4)
 
-:func:`render` makes a picture of positions, :func:`movie` a video of a trajectory, and :class:`Scene` says how. :func:`read` reads particle files into NumPy
+:func:`render` makes a picture of positions, :func:`movie` a video of a trajectory, and :class:`Scene` says how.
+:class:`Viewer` shows them in a notebook, where one turns them. :func:`read` reads particle files into NumPy
 columns; :func:`from_ase` and its kin take the structures of other packages, :func:`from_pyvista` a plotter. :class:`SphereTree` answers which sphere a
 ray hits first.
 """
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from ._render import refine, render, render_async
     from ._scene import Scene
     from ._tree import GROUND, NOTHING, Hits, SphereTree
+    from ._viewer import Viewer
     from .friends import from_ase, from_gsd, from_mdanalysis, from_ovito, from_pandas
     from .structures import from_mdtraj, from_pymatgen
 
@@ -38,6 +40,7 @@ _PLACES = {
     "_render": ("refine", "render", "render_async"),
     "_scene": ("Scene",),
     "_tree": ("GROUND", "NOTHING", "Hits", "SphereTree"),
+    "_viewer": ("Viewer",),
     "friends": ("from_ase", "from_gsd", "from_mdanalysis", "from_ovito", "from_pandas"),
     "structures": ("from_mdtraj", "from_pymatgen"),
 }
@@ -55,6 +58,7 @@ __all__ = [
     "SphereTree",
     "SpheruleWarning",
     "Stop",
+    "Viewer",
     "count_frames",
     "frames",
     "from_ase",

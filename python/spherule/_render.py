@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from ._options import AllOptions
 
 
-def _scene(source: Any, given: dict[str, Any]) -> tuple[Scene, bool]:
-    """The scene, and whether it is of this call alone."""
+def scene_of(source: Any, given: dict[str, Any]) -> tuple[Scene, bool]:
+    """The scene, and whether it is of this call alone; for the package alone."""
     _options.check(given, _options.PARTICLES, _options.STYLE, _options.SECTIONS, _options.RENDER, _options.RUN)
     looks = _options.part(given, _options.PARTICLES | _options.STYLE | _options.SECTIONS)
     if isinstance(source, Scene):
@@ -111,7 +111,7 @@ def render(source: Any = None, **options: Unpack[AllOptions]) -> Picture:
     if on_interrupt not in ("return", "raise"):
         raise Error(f"`on_interrupt` is {on_interrupt!r}, but must be return or raise")
     table = _options.render_table(given)
-    scene, is_own = _scene(source, given)
+    scene, is_own = scene_of(source, given)
     with reporting(given.get("progress")) as report:
         picture = rendered(scene, table, given, report, is_own=is_own)
     stop = _stop(given)
@@ -149,7 +149,7 @@ def refine(source: Any = None, seconds: float = 0.5, **options: Unpack[AllOption
 
     given: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
     table = _options.render_table(given)
-    scene, _ = _scene(source, given)
+    scene, _ = scene_of(source, given)
     seconds = _values.number("seconds", seconds)
     return _steps(_native.refine(scene._native, table), seconds, _stop(given))
 

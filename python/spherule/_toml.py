@@ -59,6 +59,11 @@ def _table(name: str, table: Mapping[str, Any]) -> str:
     return "".join(lines)
 
 
+def line(name: str, table: Mapping[str, Any]) -> str:
+    """The keys of a section on one line, as options of the program take them."""
+    return _table(name, table).rstrip("\n").replace("\n", ", ")
+
+
 #: Sections of which there may be several.
 LISTS = frozenset(name for name, kind in Sections.__annotations__.items() if "Sequence[" in str(kind))
 

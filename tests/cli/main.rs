@@ -20,6 +20,7 @@ mod page;
 mod particles;
 mod parts;
 mod pictures;
+mod pipe;
 mod prepared;
 #[path = "../common/process.rs"]
 mod process;

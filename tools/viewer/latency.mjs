@@ -25,11 +25,11 @@ const first = performance.now() - opened;
 await page.waitForTimeout(1000);
 const figures = await page.evaluate(async () => {
   const { left, top, width, height } = document.getElementById("stage").getBoundingClientRect();
-  const canvas = document.getElementById("image");
+  const canvas = document.getElementById("image"), { measured } = document.getElementById("view");
   const fire = (type, x, y) => canvas.dispatchEvent(new PointerEvent(type, { clientX: left + x, clientY: top + y, pointerId: 1, button: 0, bubbles: true, pointerType: "touch" }));
   canvas.setPointerCapture = () => {};
   fire("pointerdown", width / 2, height / 2);
-  const before = window.measured.length;
+  const before = measured.length;
   const start = performance.now();
   for (let step = 0; performance.now() - start < 8000; step += 1) {
     fire("pointermove", width / 2 + 200 * Math.sin(step / 40), height / 2 + 60 * Math.sin(step / 70));
@@ -37,7 +37,7 @@ const figures = await page.evaluate(async () => {
   }
   const seconds = (performance.now() - start) / 1000;
   fire("pointerup", width / 2, height / 2);
-  const shown = window.measured.slice(before);
+  const shown = measured.slice(before);
   return { width, height, seconds, pictures: shown.length, latencies: shown.flat() };
 });
 const sorted = figures.latencies.sort((a, b) => a - b);

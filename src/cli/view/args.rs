@@ -39,6 +39,9 @@ pub(in crate::cli) struct ViewerArgs {
     /// Print the page's address, and open no browser
     #[arg(long, help_heading = "Page", conflicts_with = "headless_script")]
     pub(super) no_browser: bool,
+    /// Read commands from standard input, and write messages to standard output, for the program that started this one
+    #[arg(long, hide = true, conflicts_with_all = ["headless_script", "address", "port", "no_browser"])]
+    pub(super) pipe: bool,
     #[command(flatten)]
     pub(super) render: RenderArgs,
 }

@@ -1,4 +1,4 @@
-//! A page that looks: what waits to be sent to it, and the thread that sends.
+//! A page that looks: what waits to be sent to it, and what sends it.
 //!
 //! At most two images are on their way; of those that wait, only the newest is kept. A page that reads nothing therefore
 //! costs two images, and is given up when a write takes too long.
@@ -207,20 +207,43 @@ fn send_all(stream: &TcpStream, client: &Client) -> Result<(), tungstenite::Erro
     stream.set_nodelay(true)?;
     stream.set_write_timeout(Some(PATIENCE))?;
     let mut socket = WebSocket::from_raw_socket(stream, Role::Server, None);
+    deliver(client, |outgoing| match outgoing {
+        Outgoing::Frames(frames) => Ok(socket.get_mut().write_all(&frames)?),
+        Outgoing::Text(text) => socket.send(Message::text(text)),
+        Outgoing::Binary(bytes) => socket.send(Message::binary(bytes)),
+    })
+}
+
+/// A thing to write to a connection.
+pub(super) enum Outgoing {
+    /// Frames of the protocol of sockets.
+    Frames(Vec<u8>),
+    Text(String),
+    /// A header and files.
+    Binary(Vec<u8>),
+}
+
+/// Writes all that is for a client, until it is closed.
+///
+/// # Errors
+/// Those of `write`, after which nothing is written.
+pub(super) fn deliver<E>(
+    client: &Client,
+    mut write: impl FnMut(Outgoing) -> Result<(), E>,
+) -> Result<(), E> {
     // The image that the page shows.
     let mut before: Option<Arc<Picture>> = None;
     while let Some(parcel) = client.next() {
-        match parcel {
-            Parcel::Answers(frames) => socket.get_mut().write_all(&frames)?,
-            Parcel::Reply(Reply::Text(text)) => socket.send(Message::text(text))?,
-            Parcel::Reply(Reply::File(header, file)) => {
-                socket.send(Message::binary(framed(&header, &[&file])))?;
-            }
+        write(match parcel {
+            Parcel::Answers(frames) => Outgoing::Frames(frames),
+            Parcel::Reply(Reply::Text(text)) => Outgoing::Text(text),
+            Parcel::Reply(Reply::File(header, file)) => Outgoing::Binary(framed(&header, &[&file])),
             Parcel::Shot(shot, pace) => {
-                socket.send(Message::binary(packed(&shot, before.as_deref(), pace)))?;
+                let message = packed(&shot, before.as_deref(), pace);
                 before = Some(Arc::clone(&shot.picture));
+                Outgoing::Binary(message)
             }
-        }
+        })?;
     }
     Ok(())
 }

@@ -10,7 +10,8 @@ use super::listen::Call;
 use super::load::{LoadedScene, Origin};
 use super::loading::Loading;
 use super::options::Options;
-use super::save::{Saved, encode_picture, save_scene};
+use super::renderer::Picked;
+use super::save::{Saved, encode_picture, raw_picture, save_scene};
 use super::script::{self, Step};
 use super::session;
 use super::state::state;
@@ -19,7 +20,7 @@ use super::worker::{Message, Workers};
 use crate::cli::failure::Failure;
 use crate::cli::output;
 use crate::cli::render::RenderSetup;
-use serde_json::json;
+use serde_json::{Value, json};
 use spherule_render::image::Format;
 use spherule_render::scene::{Camera, Scene, Settings};
 use std::collections::{HashSet, VecDeque};
@@ -42,6 +43,8 @@ const SIZE: (u32, u32) = (1280, 720);
 pub(super) enum Input {
     Call(Call),
     Message(Message),
+    /// No page will come any more.
+    End,
 }
 
 impl From<Call> for Input {
@@ -125,7 +128,7 @@ impl Host {
         })
     }
 
-    /// Handles inputs until there can be none any more.
+    /// Handles inputs until their end.
     ///
     /// # Errors
     /// The first scene cannot be loaded.
@@ -138,6 +141,7 @@ impl Host {
                         return Err(failure);
                     }
                     Input::Message(message) => self.receive(message),
+                    Input::End => return Ok(()),
                 }
             }
             self.update();
@@ -176,6 +180,11 @@ impl Host {
     fn obey(&mut self, number: u64, line: &str) -> Result<(), String> {
         if line == "steer" {
             (self.steering, self.heard) = (Some(number), 0);
+            return Ok(());
+        }
+        if let Some(mark) = line.strip_prefix("mark ") {
+            // The page knows by it what its commands before that did.
+            self.tell(number, &json!({ "state": self.facts(), "mark": mark }).to_string());
             return Ok(());
         }
         if let Some(suffix) = line.strip_prefix("download ") {
@@ -272,6 +281,10 @@ impl Host {
                 self.tell_all(&text);
             }
             Message::Picked(Ok(picked), purpose) => {
+                if purpose == Purpose::Name {
+                    let own = |picked: &Picked| json!({ "id": picked.id, "text": picked.text });
+                    self.tell_all(&json!({ "picked": picked.as_ref().map(own) }).to_string());
+                }
                 if let Some(line) = session::picked_by(&mut self.viewer, picked, purpose) {
                     output::print(line);
                 }
@@ -353,10 +366,7 @@ impl Host {
             self.workers.request_image(request);
         }
         self.send_image();
-        let mut facts = state(&self.viewer);
-        facts["pages"] = json!(self.clients.len());
-        facts["busy"] = json!(self.is_loading());
-        let told = json!({ "state": facts }).to_string();
+        let told = json!({ "state": self.facts() }).to_string();
         if told != self.told {
             self.clients.iter().for_each(|(_, client)| client.state(told.clone()));
             self.told = told;
@@ -368,6 +378,15 @@ impl Host {
                 }
             }
         }
+    }
+
+    /// Returns the state that pages are told.
+    fn facts(&self) -> Value {
+        let mut facts = state(&self.viewer);
+        facts["pages"] = json!(self.clients.len());
+        facts["busy"] = json!(self.is_loading());
+        facts["sampled"] = json!(self.viewer.sampled().map_or(0, |picture| picture.samples));
+        facts
     }
 
     /// Returns whether the content is not shown yet.
@@ -388,7 +407,8 @@ impl Host {
         }
     }
 
-    /// Sends a page the image as a file, or with the suffix `toml` its scene; once there is one, if there is none yet.
+    /// Sends a page the image as a file, with the suffix `toml` its scene, or with `raw` its numbers; once there is one, if
+    /// there is none yet.
     fn download(&mut self, number: u64, suffix: &str) -> Result<(), String> {
         let Some((_, client)) = self.clients.iter().find(|(own, _)| *own == number) else {
             return Ok(());
@@ -398,6 +418,11 @@ impl Host {
             self.wanted.push((number, suffix.to_owned()));
             return Ok(());
         };
+        if suffix == "raw" {
+            let (header, pixels) = raw_picture(&saved.seen())?;
+            client.reply(Reply::File(header, pixels));
+            return Ok(());
+        }
         let (client, scene, origin) = (Arc::clone(client), Arc::clone(scene), self.origin.clone());
         let suffix = suffix.to_owned();
         let format = Format::of_suffix(Path::new(&format!("view.{suffix}")));

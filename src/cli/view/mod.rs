@@ -5,8 +5,8 @@
 //! ```
 //!
 //! The [`viewer`] is a state machine without clock, threads and files. [`headless`] drives it in one thread. [`host`]
-//! drives it for pages, with a thread that loads and one that renders; [`listen`] connects pages, and [`client`] sends
-//! them images.
+//! drives it for pages, with a thread that loads and one that renders; [`listen`] connects pages, [`pipe`] the program that
+//! started this one, and [`client`] sends them images.
 
 mod args;
 mod camera_control;
@@ -31,6 +31,7 @@ mod options;
 mod overlay;
 mod pace;
 mod page;
+mod pipe;
 mod python;
 mod refinement;
 mod renderer;
@@ -87,6 +88,10 @@ pub(super) fn run(args: &ViewerArgs, program: &clap::Command) -> Result<ExitCode
     refuse(args, &setup)?;
     check_bar(&setup)?;
     let options = Options::of_process(program)?;
+    if args.pipe {
+        pipe::open(&setup, options, program)?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let Some(path) = &args.headless_script else {
         page::open(&setup, args, options)?;
         return Ok(ExitCode::SUCCESS);

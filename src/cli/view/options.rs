@@ -19,7 +19,7 @@ const FIXED: [&str; 8] =
     ["frame", "size", "dpi", "output_format", "bits", "quality", "ppm", "turntable"];
 
 /// Options of the page, which say nothing of the image.
-const OF_PAGE: [&str; 4] = ["headless_script", "address", "port", "no_browser"];
+const OF_PAGE: [&str; 5] = ["headless_script", "address", "port", "no_browser", "pipe"];
 
 /// A file and options, as on the command line.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -21,7 +21,7 @@ use std::thread;
 const LOOPBACK: &str = "127.0.0.1";
 
 /// Maximum number of inputs that wait: pages that send more wait, too.
-const WAITING: usize = 256;
+pub(super) const WAITING: usize = 256;
 
 /// Serves the page of the setup's scene, opens a browser where there is a display, and runs until the process ends.
 ///

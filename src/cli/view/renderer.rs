@@ -61,6 +61,8 @@ struct Plain {
 /// A picked sphere.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Picked {
+    /// Id of the particle, or else the number of the sphere.
+    pub(super) id: f64,
     /// Description in one line.
     pub(super) text: String,
     pub(super) kind: Option<String>,
@@ -265,7 +267,7 @@ impl Renderer {
         let size = DVec2::new(f64::from(settings.width), f64::from(settings.height));
         let offset = (place - size / 2.0) / size.y;
         let ray = CameraControl::new(camera.clone(), extent).ray(offset * DVec2::new(1.0, -1.0));
-        Ok(Some(Picked { text, kind, point: intersect(ray, center, radius) }))
+        Ok(Some(Picked { id, text, kind, point: intersect(ray, center, radius) }))
     }
 }
 

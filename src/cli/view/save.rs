@@ -7,10 +7,11 @@ use crate::cli::failure::Failure;
 use crate::cli::render::{
     RenderSetup, Subject, alpha, check_alpha, push_denoised, push_error, write_bar,
 };
+use serde_json::json;
 use spherule_render::atomic::write_atomically;
 use spherule_render::film::Region;
 use spherule_render::image::{Channel, Format, WriteOptions};
-use spherule_render::scene::{Camera, Header, Look, Scene, Settings, write_as};
+use spherule_render::scene::{Camera, Header, Look, Scene, Settings, Tone, write_as};
 use std::path::Path;
 use std::sync::{Arc, PoisonError, RwLock};
 
@@ -74,6 +75,36 @@ pub(super) fn encode_picture(seen: &SavedImage, format: Format) -> Result<Vec<u8
     let (image, matte) = seen.picture.visible();
     let channels: Vec<Channel> = matte.map(|matte| alpha(matte, format)).into_iter().collect();
     Ok(image.encode(format, &channels, &options)?)
+}
+
+/// Returns the numbers of the image, linear RGB in single precision from the top left, lowest byte first, after a header of
+/// what the Python package has in `Picture`.
+///
+/// # Errors
+/// The image is transparent.
+pub(super) fn raw_picture(seen: &SavedImage) -> Result<(String, Vec<u8>), String> {
+    if seen.look.is_transparent() {
+        return Err(
+            "the background is transparent; choose a color, or save the image in the page".into()
+        );
+    }
+    let Settings { exposure, tone, dpi, .. } = *seen.settings;
+    let (image, _) = seen.picture.visible();
+    let bytes = image.pixels.as_flattened().iter().flat_map(|value| value.to_le_bytes());
+    let Picture { samples, noise, before, .. } = seen.picture;
+    let header = json!({
+        "file": "view.raw",
+        "shape": [image.height, image.width, 3],
+        "title": seen.title,
+        "exposure": exposure,
+        "tone": if tone == Tone::Filmic { "filmic" } else { "linear" },
+        "dpi": dpi,
+        "samples": samples,
+        "error": noise.map(|noise| noise.error),
+        "error_bound": noise.map(|noise| noise.bound),
+        "denoised": before.is_some(),
+    });
+    Ok((header.to_string(), bytes.collect()))
 }
 
 /// Writes the color bar, if it has its own file and colors represent numbers.
