@@ -99,7 +99,7 @@ pub mod scene {
         ColorLegend, ConductorFresnel, Cones, Denoise, Ellipsoids, Environment, EnvironmentMap,
         FileError, Filter, Footprint, FramedSphere, Ground, Header, Identity, Insets, Integrator,
         InvalidSetting, Label, Length, Lens, LetterSize, Lettering, Light, LightChoice, Look,
-        Material, NamedMaterial, Paper, Place, Pose, Preset, Projection, Rgb, Roulette,
+        Material, Measure, NamedMaterial, Paper, Place, Pose, Preset, Projection, Rgb, Roulette,
         SamplerKind, ScaleBar, Scene, Settings, Slice, SliceMode, SlicePlane, Spheres, Sticks,
         Tone, Triangles, text_without_columns, write, write_as,
     };
@@ -119,11 +119,11 @@ pub mod scene {
         pub use spherule_render::scene::particles::{
             AddedBodies, Applied, ArrowCentering, ArrowSizes, ArrowStyle, Arrows, BondRules,
             BondSource, Bonds, Boundary, Cell, ColorEnd, ColorEnds, Coloring, ColumnColors,
-            ColumnSummary, Coordination, ElementColors, FirstFrame, Legend, Model, NumberColors,
-            Opacity, Orientation, Outside, ParticleStyle, Particles, PeriodicError, Polyhedra,
-            Properties, SelectedStyle, Selection, Shapes, SharedColors, Trails, TrajectoryReader,
-            TypeMaterial, TypeStyle, UpReason, VectorColumns, accept_radii_expression, of_frame,
-            of_frame_in, read,
+            ColumnSummary, ColumnValues, Coordination, ElementColors, FirstFrame, Legend, Model,
+            NumberColors, Opacity, Orientation, Outside, ParticleStyle, Particles, PeriodicError,
+            Polyhedra, Properties, SelectedStyle, Selection, Shapes, SharedColors, Trails,
+            TrajectoryReader, TypeMaterial, TypeStyle, UpReason, VectorColumns,
+            accept_radii_expression, of_frame, of_frame_in, read,
         };
     }
 }
@@ -158,8 +158,9 @@ pub mod compose {
     #[doc(inline)]
     pub use spherule_render::compose::{
         AnnotationRequest, Axes, Bar, CameraRequest, CellRequest, Content, Fault, Focus, LabelText,
-        Labels, LensRequest, LookAt, ROWS, Request, Sections, Shared, Staged, Subject, Survey,
-        Template, Value, change, choose, frame, light_ahead, place, position, stage, zoom,
+        Labels, LensRequest, LookAt, MeasureRequest, ROWS, Request, Sections, Shared, Staged,
+        Subject, Survey, Template, Value, change, choose, frame, light_ahead, place, position,
+        stage, zoom,
     };
 }
 

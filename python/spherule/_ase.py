@@ -17,8 +17,7 @@ from typing import Any
 
 from ase.utils.plugins import ExternalIOFormat, ExternalViewer
 
-from . import _render, _scene, _values
-from .__main__ import program
+from . import _program, _render, _scene, _values
 from ._errors import Error, warn
 from ._progress import in_notebook
 
@@ -56,7 +55,7 @@ def view_spherule(atoms: Any, data: Any = None, repeat: Any = None, **options: A
         if len(frames) > 1:
             warn(f"shows the first of {len(frames)} frames; spherule.movie makes a video of all")
         return _scene.Scene(frames[0], **options)
-    name = program()
+    name = _program.find()
     if name is None:
         raise Error("the program `spherule` is not installed; its folder must be in PATH")
     from ase.io import write

@@ -96,7 +96,10 @@ class Scene:
             ``"halves"``; by default none in a completed cell, and else halves.
         slices: Planes that cut spheres away, as in ``["z > 50%"]``; ``slice_mode`` is ``"remove"``, ``"caps"`` or
             ``"hide"``.
-        label: A text or several, as in ``"top:{title}"``, or sections.
+        label: A text or several, as in ``"top:{title}"``, or sections; ``"resname LIG: {name}"`` is at each of these
+            particles.
+        measure: Particles by their ids, as in ``"12-48"``, or several: the distance of two, the angle of three, the
+            dihedral of four, drawn as lines with the value; ``"12-48:periodic"`` is between nearest images. Or sections.
         render, look, lettering, environment, ground, slice, light, material,
             sphere, stick, ellipsoid, cone, triangle, mesh, generate, file, style: Sections, as :mod:`spherule.sections` types
             them.
@@ -135,7 +138,7 @@ class Scene:
             sections["color_bar"] = color_bar
             color_bar = None
         placed = {name: sections.pop(name) for name in _PLACED if not isinstance(sections.get(name, {}), Mapping)}
-        labels = _labels(sections)
+        texts = {f"{name}s": _texts(sections, name) for name in ("label", "measure")}
         camera = None
         if "camera" in sections and not isinstance(sections["camera"], Mapping):
             camera = _values.path("camera", sections.pop("camera"))
@@ -153,7 +156,7 @@ class Scene:
             {"text": text, "folder": os.getcwd(), "keys": keys, "triangles": triangles},
             columns,
             _style(given),
-            _view(given, {"color_bar": color_bar, **placed}, labels, camera),
+            _view(given, {"color_bar": color_bar, **placed}, texts, camera),
         )
 
     @classmethod
@@ -534,18 +537,18 @@ def _placed(name: str, value: Any, usual: str) -> str | None:
     return usual if _values.flag(name, value) else None
 
 
-def _labels(sections: dict[str, Any]) -> list[str]:
-    """Takes labels that are texts from the sections; dicts stay."""
-    labels = sections.get("label", ())
-    texts = [labels] if isinstance(labels, str) else labels
+def _texts(sections: dict[str, Any], name: str) -> list[str]:
+    """Takes annotations that are texts from the sections; dicts stay."""
+    given = sections.get(name, ())
+    texts = [given] if isinstance(given, str) else given
     if not isinstance(texts, (list, tuple)) or not all(isinstance(text, str) for text in texts):
         return []
-    sections.pop("label", None)
+    sections.pop(name, None)
     return list(texts)
 
 
 def _view(
-    given: Mapping[str, Any], annotations: Mapping[str, Any], labels: list[str], camera: str | None
+    given: Mapping[str, Any], annotations: Mapping[str, Any], texts: Mapping[str, list[str]], camera: str | None
 ) -> dict[str, Any]:
     usual = {"color_bar": "bottom-right", **_PLACED}
     placed = {name: _placed(name, annotations.get(name), position) for name, position in usual.items()}
@@ -561,4 +564,4 @@ def _view(
         )
     words["complete"] = _optional(given, "complete", _values.flag)
     slices = _values.items("slices", given.get("slices", ()), _values.text)
-    return {**words, **numbers, **flags, "replicate": replicate, **placed, "labels": labels, "slices": slices}
+    return {**words, **numbers, **flags, "replicate": replicate, **placed, **texts, "slices": slices}

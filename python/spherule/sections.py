@@ -130,6 +130,17 @@ class Label(_Label, total=False):
     """``[[label]]``: text in the picture."""
 
     position: Position
+    at: Vector
+
+
+class _Measure(TypedDict):
+    points: Sequence[Vector]
+
+
+class Measure(_Measure, total=False):
+    """``[[measure]]``: lines between points, with their distance or angle."""
+
+    unit: str
 
 
 class Lettering(TypedDict, total=False):
@@ -361,6 +372,7 @@ class Sections(TypedDict, total=False):
     axes: Axes | str | bool
     scale_bar: ScaleBar | str | float | bool
     label: str | Sequence[str | Label]
+    measure: str | Sequence[str | Measure]
     lettering: Lettering
     environment: Environment
     ground: Ground

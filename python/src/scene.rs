@@ -22,6 +22,7 @@ use spherule::scene::{
 use spherule::world::WorldError;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The name of particles from arrays, in messages.
@@ -99,6 +100,7 @@ pub(crate) struct ViewTable {
     axes: Option<String>,
     scale_bar: Option<String>,
     labels: Vec<String>,
+    measures: Vec<String>,
     slices: Vec<String>,
     slice_mode: Option<String>,
 }
@@ -153,6 +155,7 @@ impl From<compose::Fault> for Fault {
                 Self::Text("`axes` of the cell need particles with a `cell`".to_owned())
             }
             compose::Fault::Label { row, why } => Self::Text(format!("label[{row}]: {why}")),
+            compose::Fault::Measure { row, why } => Self::Text(format!("measure[{row}]: {why}")),
             // No argument asks for more.
             other => Self::Text(format!("{other:?}")),
         }
@@ -366,16 +369,13 @@ impl ViewTable {
             Anchor::named,
             &Anchor::ALL.map(|(name, _)| name),
         )?;
-        let labels =
-            self.labels.iter().enumerate().map(|(row, text)| {
-                text.parse().map_err(|why: String| format!("label[{row}]: {why}"))
-            });
         let annotations = AnnotationRequest {
             color_bar: bar,
             legend: annotation("legend", self.legend.as_ref(), compose::position)?,
             axes: annotation("axes", self.axes.as_ref(), str::parse)?,
             scale_bar: annotation("scale_bar", self.scale_bar.as_ref(), str::parse)?,
-            labels: labels.collect::<Result<_, String>>()?,
+            labels: rows("label", &self.labels)?,
+            measures: rows("measure", &self.measures)?,
             ..AnnotationRequest::default()
         };
         let modes = SliceMode::ALL.map(|(name, _)| name);
@@ -426,6 +426,13 @@ fn annotation<T>(
     parsed.map_err(|why| format!("`{name}`: {why}"))
 }
 
+/// Parses annotations of which there may be several, which have this name.
+fn rows<T: FromStr<Err = String>>(name: &str, texts: &[String]) -> Result<Vec<T>, String> {
+    let parse =
+        |(row, text): (usize, &String)| text.parse().map_err(|why| format!("{name}[{row}]: {why}"));
+    texts.iter().enumerate().map(parse).collect()
+}
+
 /// The name of arrays in messages, and the title of their scene.
 fn subject(title: &str) -> Subject<'_> {
     Subject { path: Path::new(ARRAYS), title, frame: &Value::Missing("arrays have none") }
@@ -459,7 +466,9 @@ impl Work {
         let (frame, options) = table.frame(py)?;
         let first_frame = first_frame.map(|first| first.first_frame(frame.format));
         let framed = request.style.framed.take();
-        request.style = ParticleStyle { framed, ..style.style(py, options.radius_scale)? };
+        let also_read = request.annotations.columns();
+        let style = style.style(py, options.radius_scale)?;
+        request.style = ParticleStyle { framed, also_read, ..style };
         if request.annotations.color_bar.is_some() {
             request.style.coloring.prefer_map();
         }

@@ -82,6 +82,9 @@ GROUPS = [
         ({"axes": True}, ["--axes"]),
         ({"axes": "cell:left"}, ["--axes", "cell:left"]),
         ({"scale_bar": "2:bottom"}, ["--scale-bar", "2:bottom"]),
+        ({"label": "element Cu and tags > 1: {id} {tags:.1}"}, ["--label", "element Cu and tags > 1: {id} {tags:.1}"]),
+        ({"measure": "0-4:periodic"}, ["--measure", "0-4:periodic"]),
+        ({"measure": ["0-1-2", "3-4-5-6"]}, ["--measure", "0-1-2", "--measure", "3-4-5-6"]),
     ],
 ]
 

@@ -70,7 +70,7 @@ def test_every_key_of_scene_files_is_a_typed_argument():
     assert set(typing.get_type_hints(sections.Sections)) | {"color_bar"} == top
     assert _options.SECTIONS | {"color_bar"} == top and _options.RENDER == keys["render"]
     bodies = {"sphere", "stick", "ellipsoid", "cone", "triangle", "mesh"}
-    assert set(_toml.LISTS) == {"slice", "light", "label", "generate", "file", "style"} | bodies
+    assert set(_toml.LISTS) == {"slice", "light", "label", "measure", "generate", "file", "style"} | bodies
     for name, expected in keys.items():
         hints = typing.get_type_hints(getattr(sections, name.title().replace("_", "")))
         assert set(hints) == expected - {"from"}, name

@@ -156,6 +156,7 @@ const TOPICS: [(&str, &[&str]); 9] = [
             "axes",
             "scale_bar",
             "labels",
+            "measures",
             "text_size",
             "text_color",
             "color_bar",

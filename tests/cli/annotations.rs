@@ -97,6 +97,28 @@ fn labels_have_the_values_of_their_frame() {
 }
 
 #[test]
+fn measures_and_labels_at_particles_have_the_values_of_their_frame() {
+    let folder = folder();
+    let sorted = |name: &str| {
+        let mut texts = texts(&folder, name);
+        texts.sort();
+        texts
+    };
+    let measures = ["--measure", "0-1", "--measure", "0-1-2", "--measure", "0-2:periodic"];
+    render(&folder, &[&measures[..], &["--frame", "all", "-o", "a.svg"]].concat());
+    assert_eq!(sorted("a-0000.svg"), ["1.00\u{a0}\u{c5}", "180.0\u{b0}", "2.00\u{a0}\u{c5}"]);
+    assert_eq!(sorted("a-0001.svg"), ["1.00\u{a0}\u{c5}", "1.41\u{a0}\u{c5}", "108.4\u{b0}"]);
+    let label = "type C or q > 3: {element}{id} {q:.1} {energy}";
+    render(&folder, &["--label", label, "--select", "x > 0.5", "-o", "b.svg"]);
+    assert_eq!(sorted("b.svg"), ["C1 2.0 -7.25", "O2 4.0 -7.25"]);
+    // What is cut away has no label, and what is not drawn no measure.
+    render(&folder, &["--label", label, "--slice", "x > 1.5", "-o", "c.svg"]);
+    assert_eq!(sorted("c.svg"), ["C0 1.0 -7.25", "C1 2.0 -7.25"]);
+    let error = refusal(&folder, &["--measure", "0-1", "--select", "x > 0.5"]);
+    assert!(error.contains("no particle that is drawn has the id 0"), "{error}");
+}
+
+#[test]
 fn legends_and_scale_bars_follow_from_the_file() {
     let folder = folder();
     render(&folder, &["--legend", "--scale-bar", "-o", "a.svg"]);
@@ -306,6 +328,12 @@ fn mistakes_are_reported() {
         (&["-o", "a.svg", "--skip-existing"], "--skip-existing"),
         (&["-o", "a.svg", "--part", "1/2"], "parts of an image"),
         (&["--aperture", "-1"], "0 or more"),
+        (&["--measure", "1"], "two to four"),
+        (&["--measure", "1-1"], "follows itself"),
+        (&["--measure", "0-1:near"], ":periodic"),
+        (&["--measure", "0-7"], "--measure 0-7: no particle that is drawn has the id 7"),
+        (&["--label", "type C: {nam}"], "element, id, index"),
+        (&["--label", "type H: {id}"], "none of its 3 particles is labeled"),
         (&["--focus", "far"], "id:1234"),
         (&["--focus", "3"], "add --aperture"),
         (&["--aperture", "1", "--focus", "id:77"], "no particle that is drawn has the id 77"),
@@ -318,6 +346,7 @@ fn mistakes_are_reported() {
         (&["--legend"][..], "--legend needs a particle file whose colors"),
         (&["--axes=cell"], "with a cell"),
         (&["--label", "{step}"], "the file has no steps"),
+        (&["--measure", "0-1:periodic"], "no periodic cell"),
         (&["--text-size", "0.1", "--spp", "1"], "--text-size has no effect"),
     ] {
         let output = folder.run(&[&["render", "b.csv", "--size", "40x24"], args].concat());

@@ -3,7 +3,7 @@
 use crate::folder::{Folder, text};
 use crate::process::run_with_input;
 use spherule_render::image::Image;
-use spherule_render::scene::Scene;
+use spherule_render::scene::{Measure, Scene};
 use std::path::{Path, PathBuf};
 
 /// Particles of three types, one of them twice, with a column, in two frames.
@@ -158,6 +158,25 @@ fn clicks_name_spheres_and_their_types_can_be_hidden() {
     assert!(second.contains("sphere 0: type Na, at 0 0 0, radius 1, q = 1"), "{second}");
     let again = view(&folder, &salt, "size 60x60\nclick 17,43\nkey h\nkey H\nclick 17,43");
     assert_eq!(again.lines().next_back(), first.lines().next());
+}
+
+#[test]
+fn selected_spheres_are_measured() {
+    let folder = Folder::new();
+    folder.write("salt.xyz", SALT);
+    let salt = ["salt.xyz", "--radii", "1", "--view", "z"];
+    let script = "size 60x60\nclick 17,43\nclick 42,43 shift\nclick 17,18 shift\nkey esc\n\
+                  click 17,43 shift\nset measure 3-1 '3-1-2'\nwait 2\nsave a.png\nsave a.toml";
+    let told = view(&folder, &salt, script);
+    let lines: Vec<&str> = told.lines().collect();
+    assert_eq!(
+        (lines.len(), lines[2], lines[4]),
+        (6, "distance 4.24\u{a0}\u{c5}", "angle 60.0\u{b0}")
+    );
+    let scene = Scene::load(&folder.path("a.toml")).expect("a scene");
+    let texts: Vec<String> = scene.annotations.measures.iter().map(Measure::text).collect();
+    assert_eq!(texts, ["4.24\u{a0}\u{c5}", "60.0\u{b0}"]);
+    assert_saved_scene_renders(&folder, 2);
 }
 
 #[test]

@@ -137,7 +137,7 @@ pub mod internals {
     pub mod aliases {
         pub use crate::aliases::*;
     }
-    pub use crate::bonds::PairRule;
+    pub use crate::bonds::{PairRule, nearest_image};
     pub use crate::categories::retain;
     pub use crate::error::{clipped, listed};
     pub use crate::mesh::{Mesh, read_mesh};

@@ -2,7 +2,9 @@
 
 use super::lists::{self, List};
 use super::with_text::{self, WithText};
-use spherule_render::compose::{AnnotationRequest, Axes, Bar, LabelText, ink, position};
+use spherule_render::compose::{
+    AnnotationRequest, Axes, Bar, LabelText, MeasureRequest, ink, position,
+};
 use spherule_render::scene::{Anchor, LetterSize, Rgb};
 use std::str::FromStr;
 
@@ -49,14 +51,24 @@ pub(in crate::cli) struct AnnotationArgs {
     scale_bar: Option<WithText<Bar>>,
     /// Draw a line of text, as in 't = {time:.1} ps' or 'bottom:{file}'; may be repeated. Fields: {time},
     /// {step}, {frame}, {file}, {title}, {particles}, and values of the frame's header, as in {energy}; {time:.1}
-    /// has one decimal, {{ and }} are braces, \n begins a line [default position: top-left]
+    /// has one decimal, {{ and }} are braces, \n begins a line. After a selection the text is at each of its
+    /// particles, at most 500, and columns are fields, too, as in 'resname LIG: {name}' [default position: top-left]
     #[arg(
         long = "label",
-        value_name = "[POSITION:]TEXT",
+        value_name = "[POSITION:|SELECTION:]TEXT",
         allow_hyphen_values = true,
         value_parser = |text: &str| text.parse::<WithText<LabelText>>()
     )]
     labels: Vec<WithText<LabelText>>,
+    /// Measure particles by their ids in the file, or if it has none by numbers from 0: the distance of two, as in
+    /// 12-48, the angle of three at the second, the dihedral of four; drawn as lines with the value. With
+    /// :periodic between nearest periodic images. May be repeated
+    #[arg(
+        long = "measure",
+        value_name = "ID-ID[-ID[-ID]][:periodic]",
+        value_parser = |text: &str| text.parse::<WithText<MeasureRequest>>()
+    )]
+    measures: Vec<WithText<MeasureRequest>>,
     /// Size of letters: on paper, as in 7pt or 2.5mm, or as a fraction of the image's smaller side, 0.005 to 0.2;
     /// smaller where annotations would overlap [default: 7pt if --size is a length or --dpi is given, or else 0.03]
     #[arg(
@@ -84,6 +96,7 @@ impl AnnotationArgs {
         with_text::insert(&mut list, "axes", &self.axes);
         with_text::insert(&mut list, "scale_bar", &self.scale_bar);
         with_text::insert(&mut list, "label", &self.labels);
+        with_text::insert(&mut list, "measure", &self.measures);
         with_text::insert(&mut list, "text_size", &self.text_size);
         with_text::insert(&mut list, "text_color", &self.text_color);
         list
@@ -103,6 +116,7 @@ impl AnnotationArgs {
             axes: self.axes.as_deref().copied(),
             scale_bar: self.scale_bar.as_deref().copied(),
             labels: self.labels.iter().map(|label| (**label).clone()).collect(),
+            measures: self.measures.iter().map(|measure| (**measure).clone()).collect(),
             text_size: self.text_size.as_deref().copied(),
             text_color: self.text_color.as_deref().map(|ink| ink.0),
         }
@@ -111,6 +125,11 @@ impl AnnotationArgs {
     /// Returns the text of a label, as it was typed.
     pub(in crate::cli) fn label(&self, row: usize) -> &str {
         self.labels.get(row).map_or("", WithText::text)
+    }
+
+    /// Returns the text of a measure, as it was typed.
+    pub(in crate::cli) fn measure(&self, row: usize) -> &str {
+        self.measures.get(row).map_or("", WithText::text)
     }
 }
 

@@ -19,7 +19,7 @@ use crate::cli::source::Source;
 use crate::cli::threads;
 use spherule_render::World;
 use spherule_render::bvh::builders::Builder;
-use spherule_render::compose::{Fault, Focus, Request, Shared};
+use spherule_render::compose::{Fault, Request, Shared};
 use spherule_render::film::Region;
 use spherule_render::graphics;
 use spherule_render::image::Format;
@@ -155,8 +155,12 @@ impl<'a> RenderSetup<'a> {
         let part = args.part.resolved();
         let (part, deal) = if args.is_sequence() { (None, part) } else { (part, None) };
         let mut looks = args.looks.looks(args.particles.options().radius_scale);
-        looks.ids = matches!(args.views.lens().focus, Some(Focus::Particle(_)));
         looks.framed = args.views.framed();
+        // A scene refuses what is for particles itself.
+        if matches!(source, Source::Particles(..)) {
+            looks.also_read =
+                [args.views.lens().columns(), args.annotations.request(None).columns()].concat();
+        }
         Ok(Self {
             source: with_columns(source, &looks)?,
             request: request(args, looks, part.is_some())?,
@@ -214,6 +218,10 @@ impl<'a> RenderSetup<'a> {
             Fault::AxesOfCell => "--axes=cell needs a particle file with a cell; use --axes",
             Fault::Label { row, why } => {
                 let message = format!("--label '{}': {why}", self.annotations.label(row));
+                return Failure::usage("render", message);
+            }
+            Fault::Measure { row, why } => {
+                let message = format!("--measure {}: {why}", self.annotations.measure(row));
                 return Failure::usage("render", message);
             }
             Fault::Margin => "--margin has no effect on the scene's own camera; add --view",

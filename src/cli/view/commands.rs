@@ -35,6 +35,7 @@ impl Viewer {
         match command {
             Command::Page => (),
             Command::Escape if self.cutting => self.cutting = false,
+            Command::Escape if !self.picked.is_empty() => self.picked.clear(),
             Command::Escape | Command::Quit => return Some(Action::Quit),
             Command::Slice => {
                 self.cutting = true;

@@ -1,6 +1,6 @@
 //! Events, commands and actions of the viewer.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 /// Events from a page or a script.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,9 +89,25 @@ pub(super) enum Action {
 /// Purposes of picking.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Purpose {
+    /// Select it alone.
     Name,
+    /// Select it beside others, or no longer.
+    Add,
     Pivot,
     Focus,
     /// Tell what is there, and change nothing.
     Hover,
+}
+
+/// A picked sphere.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Picked {
+    /// Description in one line.
+    pub(super) text: String,
+    pub(super) kind: Option<String>,
+    /// Number of the particle in its file, or row of the sphere in the scene; `None` if the file has another word for it.
+    pub(super) id: Option<f64>,
+    pub(super) center: DVec3,
+    /// Hit point of the ray through the pixel.
+    pub(super) point: DVec3,
 }

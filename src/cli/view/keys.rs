@@ -70,12 +70,13 @@ pub(super) const BINDINGS: [(&str, Command); 62] = [
 ];
 
 /// Keys and gestures with explanations.
-pub(super) const HELP: [(&str, &str); 39] = [
+pub(super) const HELP: [(&str, &str); 40] = [
     ("left or middle drag", "orbit about the pivot"),
     ("right drag, shift+drag", "pan"),
     ("wheel, ctrl+drag", "zoom; the wheel, toward the pointer"),
     ("alt+drag, shift+wheel", "roll; field of view"),
-    ("click", "identify the sphere, also on standard output"),
+    ("click", "select the sphere, and tell what it is, also on standard output"),
+    ("shift+click", "select up to four spheres, and measure them"),
     ("double click", "make this sphere the pivot"),
     ("ctrl+click", "focus the lens on this sphere"),
     ("home a", "fit everything into view"),

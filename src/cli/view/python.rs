@@ -17,7 +17,7 @@ enum Kind {
 }
 
 /// Options and keyword arguments of `spherule.Scene.load` or `spherule.Scene`.
-const OF_SCENES: [(&str, &str, Kind); 35] = [
+const OF_SCENES: [(&str, &str, Kind); 36] = [
     ("select", "select", Kind::Text),
     ("hide", "hide", Kind::Text),
     ("style", "styles", Kind::List),
@@ -53,6 +53,7 @@ const OF_SCENES: [(&str, &str, Kind); 35] = [
     ("axes", "axes", Kind::Place),
     ("scale-bar", "scale_bar", Kind::Place),
     ("label", "label", Kind::List),
+    ("measure", "measure", Kind::List),
 ];
 
 /// Options and keyword arguments of `spherule.read`.

@@ -2,6 +2,7 @@
 
 use super::camera_control::CameraControl;
 use super::digits;
+use super::events::Picked;
 use super::image::{OverlaidImage, Picture, Quality, RenderRequest};
 use super::load::{LoadedScene, columns};
 use super::overlay::OverlayCache;
@@ -56,18 +57,6 @@ struct Plain {
     /// Error before denoising, if the image is denoised.
     before: Option<Noise>,
     rays: u64,
-}
-
-/// A picked sphere.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Picked {
-    /// Id of the particle, or else the number of the sphere.
-    pub(super) id: f64,
-    /// Description in one line.
-    pub(super) text: String,
-    pub(super) kind: Option<String>,
-    /// Hit point of the ray through the pixel.
-    pub(super) point: DVec3,
 }
 
 impl Renderer {
@@ -252,13 +241,14 @@ impl Renderer {
         let row = found.pixels.first().map_or(usize::MAX, |pixel| pixel.id as usize);
         let Some((center, radius)) = self.sphere(row) else { return Ok(None) };
         let labels = &self.stage.labels;
-        let id = labels.id(row).unwrap_or(row as f64);
+        let id = labels.id(row);
         let kind = labels.kind(row).map(str::to_owned);
         let extent = self.stage.facts.size;
         let [a, b, c] = center.to_array().map(|value| digits::length(value, extent));
         let length = digits::value(radius, extent);
         let named = kind.as_ref().map_or(String::new(), |kind| format!("type {kind}, "));
-        let mut text = format!("sphere {id}: {named}at {a} {b} {c}, radius {length}");
+        let number = id.unwrap_or(row as f64);
+        let mut text = format!("sphere {number}: {named}at {a} {b} {c}, radius {length}");
         for column in columns(labels, row) {
             text += ", ";
             text += &column;
@@ -267,7 +257,7 @@ impl Renderer {
         let size = DVec2::new(f64::from(settings.width), f64::from(settings.height));
         let offset = (place - size / 2.0) / size.y;
         let ray = CameraControl::new(camera.clone(), extent).ray(offset * DVec2::new(1.0, -1.0));
-        Ok(Some(Picked { id, text, kind, point: intersect(ray, center, radius) }))
+        Ok(Some(Picked { text, kind, id, center, point: intersect(ray, center, radius) }))
     }
 }
 

@@ -1,12 +1,11 @@
 //! Changes of a viewer by its scene: what pages and scripts share.
 
-use super::events::Purpose;
+use super::events::{Picked, Purpose};
 use super::load::LoadedScene;
-use super::renderer::Picked;
-use super::viewer::Viewer;
+use super::viewer::{SELECTED, Viewer};
 use crate::cli::options::views::from_side;
 use spherule_render::compose::corners;
-use spherule_render::scene::{Camera, Pose, Projection, Scene, Settings};
+use spherule_render::scene::{Camera, Measure, Pose, Projection, Scene, Settings};
 use spherule_render::world::framing;
 use std::sync::{PoisonError, RwLock, TryLockError};
 
@@ -35,6 +34,7 @@ pub(super) fn set(viewer: &mut Viewer, stage: &LoadedScene) {
         viewer.set_camera(camera);
     }
     viewer.loaded(stage.facts.clone());
+    find_picked(viewer, stage);
     viewer.history.amend(viewer.state());
 }
 
@@ -86,6 +86,51 @@ fn fit(camera: &mut Camera) {
     }
 }
 
+/// Selects a sphere beside others, or no longer if it is selected; returns the text to print.
+fn add(viewer: &mut Viewer, picked: Picked) -> Option<String> {
+    if let Some(own) = viewer.picked.iter().position(|own| own.center == picked.center) {
+        viewer.picked.remove(own);
+        return None;
+    }
+    if viewer.picked.len() == SELECTED {
+        viewer.show_message("four are selected; click without Shift to begin anew");
+        return None;
+    }
+    let text = picked.text.clone();
+    viewer.picked.push(picked);
+    let measure = measure(viewer, false);
+    if let Some(measure) = &measure {
+        viewer.show_message(measure.clone());
+    }
+    Some(measure.map_or_else(|| text.clone(), |measure| format!("{text}\n{measure}")))
+}
+
+/// Returns what two to four selected spheres measure, perhaps between nearest periodic images.
+pub(super) fn measure(viewer: &Viewer, periodic: bool) -> Option<String> {
+    let name = ["distance", "angle", "dihedral"].get(viewer.picked.len().checked_sub(2)?)?;
+    let points = viewer.picked.iter().map(|picked| picked.center).collect();
+    let mut measure = Measure { points, unit: viewer.facts.unit.to_owned() };
+    if periodic {
+        let cell = viewer.facts.cell.filter(|cell| cell.periodic.contains(&true))?;
+        measure = measure.with_nearest_images(&cell);
+    }
+    Some(format!("{name} {}", measure.text()))
+}
+
+/// Finds the selected spheres in another scene, as of another frame; those that are not there are no longer selected.
+fn find_picked(viewer: &mut Viewer, stage: &LoadedScene) {
+    if stage.origin.is_some() {
+        // There is only a sketch of the spheres.
+        return viewer.picked.clear();
+    }
+    let scene = stage.scene.read().unwrap_or_else(PoisonError::into_inner);
+    let find = |id: f64| (0..scene.spheres.len()).find(|&row| stage.labels.id(row) == Some(id));
+    viewer.picked.retain_mut(|picked| {
+        let row = picked.id.and_then(find);
+        row.inspect(|&row| picked.center = scene.spheres.center(row)).is_some()
+    });
+}
+
 /// Handles a picked sphere by its purpose; returns the text to print.
 pub(super) fn picked_by(
     viewer: &mut Viewer,
@@ -96,15 +141,20 @@ pub(super) fn picked_by(
         return picked.map(|picked| picked.text);
     }
     let Some(picked) = picked else {
+        if purpose == Purpose::Name {
+            viewer.picked.clear();
+        }
         viewer.show_message("no sphere here");
         return None;
     };
     viewer.show_message(picked.text.clone());
     match purpose {
         Purpose::Name => {
-            viewer.named = picked.kind;
+            viewer.named.clone_from(&picked.kind);
+            viewer.picked = vec![picked.clone()];
             return Some(picked.text);
         }
+        Purpose::Add => return add(viewer, picked),
         Purpose::Pivot => viewer.control.set_pivot(picked.point),
         Purpose::Focus => viewer.control.focus(picked.point),
         Purpose::Hover => (),

@@ -4,6 +4,7 @@ use super::keys;
 use super::options::{Options, command, topics};
 use super::python;
 use super::script::COMMANDS;
+use super::session;
 use super::token::token;
 use super::viewer::Viewer;
 use crate::cli::failure::Failure;
@@ -109,12 +110,39 @@ pub(super) fn state(viewer: &Viewer) -> Value {
         "command": command,
         "python": python,
         "named": viewer.named,
+        "picked": picked(viewer),
+        "measures": measures(viewer),
         "message": viewer.message,
         "loading": viewer.loading.as_ref().map(|loading| json!([loading.text(), loading.done])),
         "cutting": viewer.is_cutting(),
         "undo": undo,
         "redo": redo,
     })
+}
+
+/// Describes the selected spheres.
+fn picked(viewer: &Viewer) -> Vec<Value> {
+    let picked = viewer.picked.iter();
+    picked.map(|picked| json!({ "id": picked.id, "text": picked.text })).collect()
+}
+
+/// Returns what the selected spheres measure, each with the value of the option that draws it: directly, and between nearest
+/// images if that differs.
+fn measures(viewer: &Viewer) -> Vec<Value> {
+    let ids = viewer.picked.iter().map(|picked| Some(picked.id?.to_string()));
+    let ids: Option<Vec<String>> = ids.collect();
+    // Only particles of files are measured by an option.
+    let ids = ids.filter(|_| viewer.facts.preset.is_some());
+    let mut measures: Vec<Value> = Vec::new();
+    let mut before = None;
+    for (periodic, suffix) in [(false, ""), (true, ":periodic")] {
+        let text = session::measure(viewer, periodic);
+        let Some(text) = text.filter(|text| before.as_ref() != Some(text)) else { continue };
+        let option = ids.as_ref().map(|ids| ids.join("-") + suffix);
+        measures.push(json!({ "text": text, "periodic": periodic, "option": option }));
+        before = Some(text);
+    }
+    measures
 }
 
 /// Returns the options that make the image of a particle file, but for the camera; `None` for scenes, whose changes only a

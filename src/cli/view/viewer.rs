@@ -3,7 +3,7 @@
 
 use super::camera_control::CameraControl;
 use super::content::{Content, CutPlane, LookChanges};
-use super::events::{Action, Button, Event, Modifiers, Purpose};
+use super::events::{Action, Button, Event, Modifiers, Picked, Purpose};
 use super::frame_rate::FrameRate;
 use super::history::History;
 use super::image::Picture;
@@ -12,12 +12,15 @@ use super::loading::Loading;
 use super::tonemap::{DisplaySettings, ToneMapper};
 use glam::DVec2;
 use spherule_render::elementary::pow;
-use spherule_render::scene::particles::{Legend, Orientation};
+use spherule_render::scene::particles::{Cell, Legend, Orientation};
 use spherule_render::scene::{Camera, Denoise, Look, Preset, Settings};
 use std::sync::Arc;
 
 /// Minimum and maximum side of the image in pixels.
 const SIDES: (u32, u32) = (16, 16_384);
+
+/// Maximum number of selected spheres: those of a dihedral.
+pub(super) const SELECTED: usize = 4;
 
 /// Range of display scales.
 pub(super) const SCALES: std::ops::RangeInclusive<f64> = 0.25..=8.0;
@@ -66,6 +69,9 @@ pub(super) struct Facts {
     /// The color scale, if colors represent numbers, and whether the image has its own color bar.
     pub(super) legend: Option<Legend>,
     pub(super) color_bar: bool,
+    /// The cell of the particles, and the symbol of their unit of length.
+    pub(super) cell: Option<Cell>,
+    pub(super) unit: &'static str,
 }
 
 /// Current action of the pointer.
@@ -94,6 +100,8 @@ pub(super) struct Viewer {
     pub(super) frame_rate: FrameRate,
     /// Type of the last clicked sphere.
     pub(super) named: Option<String>,
+    /// Selected spheres, at most [`SELECTED`], in the order of their selection.
+    pub(super) picked: Vec<Picked>,
     /// Message to the user.
     pub(super) message: String,
     pub(super) history: History,
@@ -126,6 +134,7 @@ impl Viewer {
             facts: Facts::default(),
             frame_rate,
             named: None,
+            picked: Vec::new(),
             message: String::new(),
             history: History::default(),
             takes_camera: false,
@@ -270,7 +279,11 @@ impl Viewer {
     fn release(&mut self) -> Option<Action> {
         match self.drag.take()? {
             Drag::Click(place, Button::Left, held) => {
-                let purpose = if held.control { Purpose::Focus } else { Purpose::Name };
+                let purpose = match held {
+                    Modifiers { control: true, .. } => Purpose::Focus,
+                    Modifiers { shift: true, .. } => Purpose::Add,
+                    _ => Purpose::Name,
+                };
                 Some(Action::Pick(self.pixel(place), purpose))
             }
             Drag::CutPlane(start) => self.cut_off(start),

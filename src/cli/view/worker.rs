@@ -4,11 +4,11 @@
 //! checked for each tile.
 
 use super::content::Content;
-use super::events::Purpose;
+use super::events::{Picked, Purpose};
 use super::image::{Picture, RenderRequest};
 use super::load::{LoadedScene, Loader};
 use super::loading::{Loading, Progress, ProgressReporter};
-use super::renderer::{Picked, Renderer};
+use super::renderer::Renderer;
 use crate::cli::failure::Failure;
 use crate::cli::render::RenderSetup;
 use rayon::ThreadPool;

@@ -47,8 +47,8 @@ fn nearest(away: DVec3, cell: &Cell) -> [i64; 3] {
     best.map(|edge| edge as i64)
 }
 
-/// Returns the nearest periodic image of a vector.
-pub(crate) fn nearest_image(vector: DVec3, cell: Option<&Cell>) -> DVec3 {
+/// Returns the nearest periodic image of a vector between two particles.
+pub fn nearest_image(vector: DVec3, cell: Option<&Cell>) -> DVec3 {
     match cell {
         Some(cell) if vector.is_finite() => {
             let edges = nearest(vector, cell).map(|edge| edge as f64);

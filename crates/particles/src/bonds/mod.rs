@@ -11,7 +11,7 @@ pub use crate::frame::Bonds;
 pub(crate) use crate::frame::{Bond, ordered};
 pub(crate) use components::Adjacency;
 pub use distance::from_distance;
-pub(crate) use images::nearest_image;
+pub use images::nearest_image;
 pub(crate) use listed::{End, Listed, Numbering, row_from_one};
 pub use rules::{BondRules, BondSource, PairRule};
 

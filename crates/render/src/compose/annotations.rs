@@ -1,9 +1,10 @@
 //! Annotations that are asked for, and those that they become beside the facts of a frame.
 
+use super::marks::{Marks, MeasureRequest};
 use super::template::{Template, Value};
 use super::{Fault, Request, Subject};
 use crate::color;
-use crate::scene::particles::{Applied, Category, Cell, Coloring, Legend, Particles};
+use crate::scene::particles::{Applied, Category, Cell, Coloring, Legend, Particles, Selection};
 use crate::scene::{
     Anchor, Annotations, AxisTripod, ColorBar, ColorLegend, Label, LetterSize, Lettering, Rgb,
     ScaleBar, Scene,
@@ -29,6 +30,8 @@ pub struct AnnotationRequest {
     pub scale_bar: Option<Bar>,
     /// Lines of text.
     pub labels: Vec<LabelText>,
+    /// Distances and angles.
+    pub measures: Vec<MeasureRequest>,
     /// Size of letters.
     pub text_size: Option<LetterSize>,
     /// Color of letters.
@@ -60,6 +63,8 @@ pub struct LabelText {
     pub template: Template,
     /// Its position.
     pub position: Anchor,
+    /// The particles at each of which it is, instead of a position.
+    pub particles: Option<Selection>,
 }
 
 /// Returns the anchor with this name.
@@ -129,13 +134,29 @@ impl FromStr for Bar {
 impl FromStr for LabelText {
     type Err = String;
 
-    /// Parses a template, with or without a position before it.
+    /// Parses a template, with or without a position or a selection of particles before it.
     fn from_str(text: &str) -> Result<Self, String> {
         let placed =
             text.split_once(':').and_then(|(name, rest)| Some((Anchor::named(name)?, rest)));
-        let (position, text) = placed.unwrap_or((Anchor::TopLeft, text));
-        Ok(Self { template: text.parse()?, position })
+        if let Some((position, text)) = placed {
+            return Ok(Self { template: text.parse()?, position, particles: None });
+        }
+        let (particles, text) =
+            selected(text).map_or((None, text), |(selection, rest)| (Some(selection), rest));
+        Ok(Self { template: text.parse()?, position: Anchor::TopLeft, particles })
     }
+}
+
+/// Splits a text that begins with a selection, a colon and a space or a field. A single word is no selection, since texts begin
+/// with words: `time: {time}`.
+fn selected(text: &str) -> Option<(Selection, &str)> {
+    text.match_indices(':').find_map(|(at, _)| {
+        let (before, rest) = (&text[..at], &text[at + 1..]);
+        let ends = rest.starts_with([' ', '{']);
+        let is_word = before.trim().chars().all(char::is_alphanumeric);
+        let selection = (ends && !is_word).then(|| before.parse().ok()).flatten()?;
+        Some((selection, rest.trim_start()))
+    })
 }
 
 /// Facts about a frame that annotations show.
@@ -155,6 +176,8 @@ pub(super) struct Facts {
     pub(super) particles: Option<usize>,
     /// Step, time and the header's values; `None` if the scene is not of particles.
     header: Option<Header>,
+    /// Annotations at particles.
+    pub(super) marks: Marks,
 }
 
 #[derive(Clone, Debug)]
@@ -188,6 +211,7 @@ impl Facts {
                 title: particles.frame.title.clone(),
                 values: particles.header_values(),
             }),
+            marks: Marks::default(),
         }
     }
 
@@ -223,6 +247,19 @@ impl Facts {
 }
 
 impl AnnotationRequest {
+    /// Returns the columns of particles that labels and measures need.
+    pub fn columns(&self) -> Vec<String> {
+        let at_particles =
+            self.labels.iter().filter_map(|label| Some((label, label.particles.as_ref()?)));
+        let mut columns: Vec<String> = at_particles
+            .flat_map(|(label, own)| {
+                label.template.fields().map(str::to_owned).chain(own.columns())
+            })
+            .collect();
+        columns.extend((!self.measures.is_empty()).then(|| "id".to_owned()));
+        columns
+    }
+
     /// Returns whether a label has this field.
     pub fn shows(&self, field: &str) -> bool {
         self.labels.iter().any(|label| label.template.has(field))
@@ -266,11 +303,33 @@ pub(super) fn add(
         let unit = if own.is_empty() { facts.unit.to_owned() } else { own };
         annotations.scale_bar = Some(ScaleBar { length, unit, position });
     }
-    for (row, label) in asked.labels.iter().enumerate() {
-        let text = label.template.expand(&facts.fields(subject, scene));
-        let text = text.map_err(|why| Fault::Label { row, why })?;
-        annotations.labels.push(Label { text, position: label.position });
+    if !asked.labels.is_empty() {
+        let fields = facts.fields(subject, scene);
+        for (row, label) in asked.labels.iter().enumerate() {
+            let fault = |why: String| Fault::Label { row, why };
+            let position = label.position;
+            if label.particles.is_none() {
+                let text = label.template.expand(&fields).map_err(fault)?;
+                annotations.labels.push(Label { text, position, at: None });
+                continue;
+            }
+            if facts.header.is_none() {
+                return Err(fault("labels at particles need a particle file".to_owned()));
+            }
+            let texts = facts.marks.labels(row, &label.template, &fields, &scene.slices);
+            let texts = texts.map_err(fault)?.into_iter();
+            annotations.labels.extend(texts.map(|(at, text)| Label {
+                text,
+                position,
+                at: Some(at),
+            }));
+        }
     }
+    if !asked.measures.is_empty() && facts.header.is_none() {
+        let why = "measures need a particle file; a scene file has [[measure]]".to_owned();
+        return Err(Fault::Measure { row: 0, why });
+    }
+    annotations.measures.extend(facts.marks.measures.iter().cloned());
     let Lettering { size, color } = &mut annotations.lettering;
     *size = asked.text_size.or(*size);
     *color = asked.text_color.or(*color);
@@ -357,6 +416,24 @@ mod tests {
         assert_eq!(label("bottom:a"), Ok(Anchor::Bottom));
         assert_eq!(label("time: {time}"), Ok(Anchor::TopLeft));
         assert!(label("{time").is_err());
+    }
+
+    #[test]
+    fn selections_before_labels_are_told_from_texts() {
+        for (text, selection, field) in [
+            ("resname LIG: {name}", "resname LIG", "name"),
+            ("resid 5:10: {id}", "resid 5:10", "id"),
+            ("z > 3 and name CA:{q}", "z > 3 and name CA", "q"),
+            ("(ligand): {name}", "(ligand)", "name"),
+        ] {
+            let label: LabelText = text.parse().expect("a label");
+            assert_eq!(label.particles, Some(selection.parse().unwrap()), "{text}");
+            assert_eq!(label.template.fields().collect::<Vec<_>>(), [field], "{text}");
+        }
+        for text in ["time: {time}", "water: {time}", "t = {time}: a", "top:resname LIG: a", "a b"]
+        {
+            assert_eq!(text.parse::<LabelText>().expect("a label").particles, None, "{text}");
+        }
     }
 
     #[test]

@@ -103,6 +103,14 @@ impl FromStr for Focus {
     }
 }
 
+impl LensRequest {
+    /// Returns the columns of particles that the focus needs.
+    pub fn columns(&self) -> Vec<String> {
+        let is_particle = matches!(self.focus, Some(Focus::Particle(_)));
+        is_particle.then(|| "id".to_owned()).into_iter().collect()
+    }
+}
+
 /// Returns the center of the particle in focus, if the focus is a particle.
 pub(super) fn point_in_focus(
     request: &Request,

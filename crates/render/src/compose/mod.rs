@@ -13,6 +13,7 @@
 
 mod annotations;
 mod camera;
+mod marks;
 mod sections;
 mod survey;
 mod template;
@@ -22,11 +23,13 @@ pub use self::camera::{
     CameraRequest, Focus, LensRequest, LookAt, choose, corners, frame, leave_room, light,
     light_ahead, place, vertical, zoom,
 };
+pub use self::marks::MeasureRequest;
 pub use self::sections::{Sections, change};
 pub use self::survey::Survey;
 pub use self::template::{Template, Value};
 
 use self::annotations::Facts;
+use self::marks::Marks;
 use crate::scene::particles::{
     Applied, ArrowSizes, Boundary, Category, Cell, Kinds, Legend, NumberColumn, Orientation,
     ParticleStyle, Particles, PeriodicError, Shapes, TextColumn, UpReason,
@@ -35,6 +38,7 @@ use crate::scene::{Axis, Background, Camera, FileError, Preset, Scene, SliceMode
 use crate::settings;
 use crate::world::WorldError;
 use glam::DVec3;
+use spherule_particles::internals::aliases;
 use std::path::Path;
 
 /// Name of a column of numbers that follows particles through selections, copies and slices: [`Staged::rows`] has
@@ -139,10 +143,18 @@ impl Labels {
         self.kinds.kind(row).map(|kind| kind.name.as_str())
     }
 
-    /// Returns the number of a sphere in its file, if it is not its row.
+    /// Returns the number of a sphere in its file, or its row if the file has no numbers; `None` if it has none that is a number.
     pub fn id(&self, row: usize) -> Option<f64> {
-        let column = self.numbers.iter().find(|column| column.name == "id")?;
-        column.values.get(row).copied()
+        let mut names = std::iter::once("id").chain(aliases::of("id"));
+        let id = |name: &str| {
+            let numbers = self.numbers.iter().find(|own| own.name.eq_ignore_ascii_case(name));
+            if let Some(column) = numbers {
+                return Some(column.values.get(row).copied().filter(|id| id.is_finite()));
+            }
+            let texts = self.texts.iter().find(|own| own.name.eq_ignore_ascii_case(name))?;
+            Some((row < texts.codes.len()).then(|| texts.text(row).trim().parse().ok()).flatten())
+        };
+        names.find_map(id).unwrap_or(Some(row as f64))
     }
 }
 
@@ -194,6 +206,13 @@ pub enum Fault {
     /// A label cannot be written.
     Label {
         /// Its row in [`AnnotationRequest::labels`].
+        row: usize,
+        /// Why.
+        why: String,
+    },
+    /// Particles cannot be measured.
+    Measure {
+        /// The row in [`AnnotationRequest::measures`].
         row: usize,
         /// Why.
         why: String,
@@ -303,6 +322,7 @@ fn of_particles(
     let cell = particles.frame.cell;
     let focus = camera::point_in_focus(request, path, &particles)?;
     let framed = particles.framed(path, &request.style)?;
+    facts.marks = Marks::of(request, path, &particles)?;
     // Copies have made both larger.
     (facts.cell, facts.particles) = (cell, Some(particles.spheres.len()));
     let shared = shared.and_then(|shared| shared.orientation);

@@ -107,9 +107,17 @@ impl Template {
         Ok(text.chars().take(MAX_LENGTH).collect())
     }
 
+    /// Returns the names of the fields.
+    pub fn fields(&self) -> impl Iterator<Item = &str> {
+        self.0.iter().filter_map(|part| match part {
+            Part::Field { name, .. } => Some(name.as_str()),
+            Part::Text(_) => None,
+        })
+    }
+
     /// Returns whether the text has a field.
     pub fn has(&self, field: &str) -> bool {
-        self.0.iter().any(|part| matches!(part, Part::Field { name, .. } if name == field))
+        self.fields().any(|name| name == field)
     }
 }
 

@@ -84,8 +84,8 @@ impl Overlay<'_> {
     }
 }
 
-/// Returns the part of a line in front of the camera.
-fn clipped(camera: &Camera, [a, b]: [DVec3; 2]) -> Option<[DVec3; 2]> {
+/// Returns the part of a line, in the camera's axes, in front of the camera.
+pub(super) fn clipped(camera: &Camera, [a, b]: [DVec3; 2]) -> Option<[DVec3; 2]> {
     let farthest = a.z.max(b.z);
     let least = if camera.is_orthographic() { 0.0 } else { MIN_DEPTH_RATIO * farthest };
     let least = camera.near().max(least);

@@ -1,6 +1,6 @@
-//! Annotations of the picture: color bar, legend, axes, scale bar and labels.
+//! Annotations of the picture: color bar, legend, axes, scale bar, labels and measures.
 
-use super::Rgb;
+use super::{Measure, Rgb};
 use crate::color::Scale;
 use crate::settings::{self, Length};
 use glam::DVec3;
@@ -21,6 +21,8 @@ pub struct Annotations {
     pub scale_bar: Option<ScaleBar>,
     /// Lines of text.
     pub labels: Vec<Label>,
+    /// Distances and angles between points of the scene.
+    pub measures: Vec<Measure>,
     /// Size and color of letters.
     pub lettering: Lettering,
 }
@@ -80,6 +82,8 @@ pub struct Label {
     pub text: String,
     /// Position in the picture.
     pub position: Anchor,
+    /// The point of the scene that the text is at, instead of a position.
+    pub at: Option<DVec3>,
 }
 
 /// Size of letters.
@@ -126,12 +130,13 @@ pub enum Anchor {
 impl Annotations {
     /// Returns whether there are none; lettering does not count.
     pub fn is_empty(&self) -> bool {
-        let Self { color_bar, legend, axes, scale_bar, labels, lettering: _ } = self;
+        let Self { color_bar, legend, axes, scale_bar, labels, measures, lettering: _ } = self;
         color_bar.is_none()
             && legend.is_none()
             && axes.is_none()
             && scale_bar.is_none()
             && labels.is_empty()
+            && measures.is_empty()
     }
 }
 

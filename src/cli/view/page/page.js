@@ -190,7 +190,7 @@ function mount(root, connect) {
     drawCut();
     send("release");
     const where = place(event);
-    if (event.button === 0 && event.timeStamp - clicked.time < 350 && near(where, clicked.at)) {
+    if (event.button === 0 && !event.shiftKey && event.timeStamp - clicked.time < 350 && near(where, clicked.at)) {
       send(`double-click ${where}`);
       clicked = { time: 0, at: "" };
     } else {
@@ -384,7 +384,7 @@ function mount(root, connect) {
     ["Light and look", ["preset", "background", "exposure", "integrator", "spp", "denoise"], false],
     ["Slices", ["slice", "slice-mode"], false],
     ["Cell", ["cell", "wrap", "replicate", "complete", "outside"], false],
-    ["Annotations", ["legend", "color-bar", "axes", "scale-bar", "label"], false],
+    ["Annotations", ["legend", "color-bar", "axes", "scale-bar", "label", "measure"], false],
   ];
 
   const VIEWS = ["view", "look-at", "zoom", "roll", "projection", "up", "aperture", "focus"];
@@ -407,7 +407,7 @@ function mount(root, connect) {
       for (const row of rest) row.hidden = !row.textContent.includes(find.value.toLowerCase()) && !row.title.toLowerCase().includes(find.value.toLowerCase());
     };
     at("sections").replaceChildren(
-      ...sections, camera(), section("Types", false, [types()]), save(), section("All other options", false, [find, ...rest]));
+      ...sections, camera(), section("Selected", true, [selected()]), section("Types", false, [types()]), save(), section("All other options", false, [find, ...rest]));
     const table = at("keys").querySelector("table");
     table.replaceChildren(...hello.keys.map(([keys, what]) => make("tr", {}, make("td", {}, keys), make("td", {}, what))));
   }
@@ -526,6 +526,28 @@ function mount(root, connect) {
     const element = section("Camera", false, [sides, where]);
     element.append(...VIEWS.map((name) => options.get(name)).filter(Boolean).map(control));
     return element;
+  }
+
+  /** The selected spheres, and what they measure. */
+  function selected() {
+    const rows = make("div", { className: "selected" });
+    let before = null;
+    refreshers.push(() => {
+      const now = JSON.stringify([state.picked, state.measures, state.options.measure]);
+      if (now === before) return;
+      before = now;
+      const kept = state.options.measure ?? [];
+      const measure = ({ text, periodic, option }) => {
+        const value = make("output", { className: "measure" }, periodic ? `${text}, nearest images` : text);
+        if (!option) return make("div", {}, value);
+        const keep = make("button", { type: "button", disabled: kept.includes(option), title: "Draw it in the image, as --measure does" }, "Keep");
+        keep.onclick = () => send(`set measure ${[...kept, option].map(quoted).join(" ")}`);
+        return make("div", {}, value, keep);
+      };
+      const none = state.picked.length ? [] : [make("div", { className: "hint" }, "Click a sphere; with Shift, up to four: their distance, angle or dihedral.")];
+      rows.replaceChildren(...none, ...state.picked.map(({ text }) => make("div", {}, text)), ...state.measures.map(measure));
+    });
+    return rows;
   }
 
   function types() {

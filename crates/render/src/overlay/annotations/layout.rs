@@ -195,7 +195,8 @@ fn blocks(
 ) -> Vec<(Anchor, Block)> {
     let BlockStyle { size, ink, .. } = style;
     let Annotations { color_bar, legend, axes, scale_bar, labels, .. } = annotations;
-    let labels = labels.iter().map(|label| (label.position, block::label(label, size, ink)));
+    let labels = labels.iter().filter(|label| label.at.is_none());
+    let labels = labels.map(|label| (label.position, block::label(label, size, ink)));
     let legend = legend.iter().map(|colors| (colors.position, block::legend(colors, size, ink)));
     let bar = color_bar.iter().map(|bar| (bar.position, bar_block(bar, picture, style)));
     let axes = axes.iter().map(|axes| (axes.position, tripod(axes, view, size, ink)));

@@ -1,9 +1,10 @@
-//! Annotations of an image: their layout at its edges, and their drawing.
+//! Annotations of an image: their layout at its edges or at points of the scene, and their drawing.
 //!
 //! ```text
 //! annotations -> blocks, one for each               block, tripod, color_bar
 //!             -> stacks at corners and edges        layout
 //!             -> insets that a fitted camera leaves free, or backing panels over spheres
+//! labels and measures at points of the scene        marks
 //!             -> one Drawing                        graphics
 //! ```
 //!
@@ -12,6 +13,7 @@
 
 mod block;
 mod layout;
+mod marks;
 mod tripod;
 
 pub use block::Block;
@@ -92,6 +94,8 @@ pub fn draw(
     let paper = paper(look, ink);
     let opacity = if paper.max_element() < DARK { DARK_PANEL } else { LIGHT_PANEL };
     let mut drawing = Drawing::default();
+    let pen = marks::Pen { letter, ink, paper, opacity };
+    marks::draw(&mut drawing, annotations, world, pen);
     for (low, high) in layout.panels() {
         if covers_sphere(world, low, high) {
             drawing.translucent_rectangle(low, high, paper, opacity);

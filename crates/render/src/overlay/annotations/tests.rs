@@ -3,7 +3,7 @@ use crate::color::{Map, Range, Scale, Spacing};
 use crate::image::Image;
 use crate::scene::particles::Particles;
 use crate::scene::{
-    Anchor, AxisTripod, Camera, ColorBar, ColorLegend, Label, Projection, ScaleBar,
+    Anchor, AxisTripod, Camera, ColorBar, ColorLegend, Label, Measure, Projection, ScaleBar,
 };
 
 const SIZE: (u32, u32) = (320, 240);
@@ -26,7 +26,7 @@ fn color_bar(position: Anchor) -> ColorBar {
 
 fn everything() -> Annotations {
     let entries = ["C", "N", "O"].map(|name| (Rgb::ONE, name.to_owned())).to_vec();
-    let label = Label { text: "t = 5 ps".to_owned(), position: Anchor::TopLeft };
+    let label = Label { text: "t = 5 ps".to_owned(), position: Anchor::TopLeft, at: None };
     Annotations {
         color_bar: Some(color_bar(Anchor::Right)),
         legend: Some(ColorLegend {
@@ -140,7 +140,7 @@ fn scale_bars_have_their_length_at_the_target() {
 #[test]
 fn letters_shrink_until_all_fits() {
     let long = |count| {
-        let label = Label { text: "w".repeat(count), position: Anchor::Top };
+        let label = Label { text: "w".repeat(count), position: Anchor::Top, at: None };
         let mut scene = scene();
         scene.annotations.labels = vec![label];
         drawn(&scene, false).1
@@ -165,4 +165,43 @@ fn turning_tripods_stay_in_their_place() {
     let (side, corner) = (DVec3::NEG_Z, DVec3::NEG_ONE);
     assert_ne!(insets(side, false), insets(corner, false));
     assert_eq!(insets(side, true), insets(corner, true));
+}
+
+#[test]
+fn measures_and_labels_are_drawn_over_spheres() {
+    let mut scene = scene();
+    scene.camera.projection = Projection::Orthographic { height: Some(20.0) };
+    let (eye, target) = (DVec3::new(4.5, 4.5, 50.0), DVec3::splat(4.5));
+    (scene.camera.pose, scene.camera.up) = (Pose::LookAt { eye, target }, DVec3::Y);
+    let at = |x: f64, y: f64| DVec3::new(4.5 + x, 4.5 + y, 0.0);
+    let changed = |annotations: Annotations| {
+        let scene = Scene { annotations, ..scene.clone() };
+        let (image, fits) = drawn(&scene, false);
+        assert!(fits);
+        // Bounds of the pixels that are changed; 12 of them are as long as the scene's unit.
+        let all = (0..SIZE.1).flat_map(|y| (0..SIZE.0).map(move |x| (x, y)));
+        let dark = all.filter(|&(x, y)| image.pixel(x, y).is_some_and(|own| own != [1.0; 3]));
+        dark.fold([u32::MAX, u32::MAX, 0, 0], |[left, top, right, bottom], (x, y)| {
+            [left.min(x), top.min(y), right.max(x), bottom.max(y)]
+        })
+    };
+    // Half a line, and the white around it, are thinner than two pixels.
+    let points = vec![at(-8.0, 5.0), at(8.0, 5.0)];
+    let measure = Measure { points, unit: String::new() };
+    let lines = changed(Annotations { measures: vec![measure], ..Annotations::default() });
+    assert_eq!([lines[0], lines[2]], [160 - 96, 160 + 95], "{lines:?}");
+    assert!(lines[1] >= 50 && lines[3] <= 70, "{lines:?}");
+    let label = Label { text: "CA".to_owned(), position: Anchor::Top, at: Some(at(-8.0, -5.0)) };
+    let [left, top, right, bottom] =
+        changed(Annotations { labels: vec![label.clone()], ..Annotations::default() });
+    assert!((62..=66).contains(&(left.midpoint(right))), "{left} {right}");
+    assert!((178..=182).contains(&(top.midpoint(bottom))), "{top} {bottom}");
+    // Beyond the image, and behind the camera.
+    for at in [at(200.0, 0.0), DVec3::new(4.5, 4.5, 51.0)] {
+        let labels = vec![Label { at: Some(at), ..label.clone() }];
+        let points = vec![at, at + DVec3::Z];
+        let measures = vec![Measure { points, unit: String::new() }];
+        let none = changed(Annotations { labels, measures, ..Annotations::default() });
+        assert_eq!(none, [u32::MAX, u32::MAX, 0, 0]);
+    }
 }

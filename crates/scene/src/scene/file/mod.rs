@@ -278,6 +278,7 @@ fn read(source: &Source, root: &Block) -> Result<Scene, FileError> {
             axes: root.section()?,
             scale_bar: root.section()?,
             labels: root.sections()?,
+            measures: root.sections()?,
             lettering: root.section()?.unwrap_or_default(),
         },
         slices: root.sections()?,

@@ -404,6 +404,38 @@ impl Kind<Vec<(Rgb, String)>> for Entries {
     }
 }
 
+/// A number of points, at least the first and at most the second.
+pub(super) struct Points(pub(super) usize, pub(super) usize);
+
+impl Kind<Vec<DVec3>> for Points {
+    fn read(&self, value: &Value) -> Result<Vec<DVec3>, FileError> {
+        let items = value.item.as_array().filter(|items| (self.0..=self.1).contains(&items.len()));
+        let Some(items) = items else {
+            return Err(
+                value.must_be(format!("a list of {} to {} points [x, y, z]", self.0, self.1))
+            );
+        };
+        let point = |item: &toml::Spanned<DeValue>| {
+            let item = Value { span: item.span(), item: item.get_ref(), ..value.clone() };
+            Triple::Point.read(&item)
+        };
+        items.iter().map(point).collect()
+    }
+
+    fn text(&self, value: &Vec<DVec3>) -> Option<String> {
+        let points: Vec<_> = value.iter().filter_map(|point| Triple::Point.text(point)).collect();
+        Some(format!("[{}]", points.join(", ")))
+    }
+
+    fn contains(&self, value: &Vec<DVec3>) -> bool {
+        (self.0..=self.1).contains(&value.len()) && value.iter().all(|point| point.is_finite())
+    }
+
+    fn words(&self) -> Words {
+        Words::new(format!("a list of {} to {} points", self.0, self.1), "Sequence[Vector]")
+    }
+}
+
 /// A color behind everything, or a word for what is there.
 pub(super) struct Backdrop(pub(super) Limits);
 

@@ -3,7 +3,9 @@
 
 use super::kinds::Str::{Name, Path, Text};
 use super::kinds::Triple::{Direction, Point, Vector};
-use super::kinds::{Backdrop, Entries, Flag, Letters, List, MapName, Optional, Whole, Word};
+use super::kinds::{
+    Backdrop, Entries, Flag, Letters, List, MapName, Optional, Points, Whole, Word,
+};
 use super::{Schema, Section, Visitor, key};
 use crate::color::{Map, Range, Scale, Spacing};
 use crate::image::Image;
@@ -13,7 +15,7 @@ use crate::scene::particles::{Cell, Format, Model, TypeMaterial};
 use crate::scene::{
     Anchor, AxisTripod, BRIGHTEST, Camera, ColorBar, ColorLegend, ConductorFresnel, Environment,
     EnvironmentMap, FramedSphere, Ground, Insets, Label, Lens, Lettering, Light, Look, Material,
-    Pose, Projection, Rgb, ScaleBar, Slice, SliceMode,
+    Measure, Pose, Projection, Rgb, ScaleBar, Slice, SliceMode,
 };
 use crate::settings::Limits::{
     self, AboveTo, Any, Below, Between, NotNegative, Positive, Share, Within,
@@ -25,7 +27,7 @@ use std::sync::Arc;
 type SchemaOf = fn() -> Schema;
 
 /// The sections and their schemas, by the names of their keys; `title` is no section.
-pub(in crate::scene) const SECTIONS: [(&str, SchemaOf); 23] = [
+pub(in crate::scene) const SECTIONS: [(&str, SchemaOf); 24] = [
     ("render", Schema::render),
     ("camera", Schema::of::<Camera>),
     ("look", Schema::of::<Look>),
@@ -34,6 +36,7 @@ pub(in crate::scene) const SECTIONS: [(&str, SchemaOf); 23] = [
     ("axes", Schema::of::<AxisTripod>),
     ("scale_bar", Schema::of::<ScaleBar>),
     ("label", Schema::of::<Label>),
+    ("measure", Schema::of::<Measure>),
     ("lettering", Schema::of::<Lettering>),
     ("environment", Schema::of::<EnvironmentKeys>),
     ("ground", Schema::of::<GroundKeys>),
@@ -290,13 +293,29 @@ impl Section for ScaleBar {
 
 impl Section for Label {
     const NAME: &'static str = "[[label]]";
-    const EMPTY: fn() -> Self = || Self { text: String::new(), position: Anchor::TopLeft };
+    const EMPTY: fn() -> Self = || Self { position: Anchor::TopLeft, ..Self::default() };
 
     fn visit<V: Visitor>(&mut self, keys: &mut V) {
-        let Self { text, position } = self;
+        let Self { text, position, at } = self;
         let own = key("text", "text, of one or more lines").required("text = \"the label\"");
         keys.visit(own, Text, text);
         self::position(keys, position, "position");
+        let help = "point of the scene that the text is over, instead of a `position`";
+        keys.visit(key("at", help).or("none"), Optional(Point), at);
+    }
+}
+
+impl Section for Measure {
+    const NAME: &'static str = "[[measure]]";
+    const EMPTY: fn() -> Self = Self::default;
+
+    fn visit<V: Visitor>(&mut self, keys: &mut V) {
+        let Self { points, unit } = self;
+        let example = "points = [[x, y, z], [x, y, z]]: two to four points";
+        let help = "two points for their distance, three for the angle at the second, four for the dihedral about the line \
+                    from the second to the third";
+        keys.visit(key("points", help).required(example), Points(2, 4), points);
+        keys.visit(key("unit", "name of the scene's unit, for distances"), Text, unit);
     }
 }
 

@@ -32,9 +32,9 @@ pub use spherule_particles::{
 };
 pub use style::{
     Applied, ArrowCentering, ArrowSizes, ArrowStyle, Arrows, Category, ColorEnd, ColorEnds,
-    Coloring, ColumnColors, ColumnSummary, ElementColors, GHOST, Legend, NumberColors, Opacity,
-    PROPERTIES, ParticleStyle, Properties, SelectedStyle, SharedColors, TypeMaterial, TypeStyle,
-    VectorColumns,
+    Coloring, ColumnColors, ColumnSummary, ColumnValues, ElementColors, GHOST, Legend,
+    NumberColors, Opacity, PROPERTIES, ParticleStyle, Properties, SelectedStyle, SharedColors,
+    TypeMaterial, TypeStyle, VectorColumns,
 };
 
 use super::FileError;

@@ -57,10 +57,18 @@ impl Particles {
     }
 
     /// Returns the center of the first particle with this number in the column of ids; `None` if there is
-    /// none, or if ids were not read ([`ParticleStyle::ids`](super::ParticleStyle::ids)).
+    /// none, or if ids were not read ([`ParticleStyle::also_read`](super::ParticleStyle::also_read)).
     pub fn position_of(&self, id: f64) -> Option<glam::DVec3> {
-        let Some(Column::Numbers(ids)) = Column::find(self, ID) else { return None };
-        ids.iter().position(|own| *own == id).map(|row| self.spheres.center(row))
+        let row = match Column::find(self, ID)? {
+            Column::Numbers(ids) => ids.iter().position(|own| *own == id)?,
+            // Serial numbers of PDB files may have letters.
+            Column::Texts { names, codes } => {
+                let is_id = |name: &&str| name.trim().parse() == Ok(id);
+                let named: Vec<bool> = names.iter().map(is_id).collect();
+                (0..codes.len()).find(|&row| named[codes.code(row) as usize])?
+            }
+        };
+        Some(self.spheres.center(row))
     }
 
     /// Returns the `key=value` pairs of the title, as extended XYZ has them.

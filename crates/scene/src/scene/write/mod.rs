@@ -202,8 +202,8 @@ mod tests {
     use crate::scene::{
         Anchor, Annotations, AxisTripod, BRIGHTEST, Background, ColorBar, ColorLegend,
         ConductorFresnel, Filter, FramedSphere, Ground, Insets, Integrator, Label, Lens,
-        LetterSize, Lettering, Light, LightChoice, Material, Projection, Roulette, SamplerKind,
-        ScaleBar, Slice, SliceMode,
+        LetterSize, Lettering, Light, LightChoice, Material, Measure, Projection, Roulette,
+        SamplerKind, ScaleBar, Slice, SliceMode,
     };
     use glam::DVec3;
     use std::sync::Arc;
@@ -327,7 +327,14 @@ mod tests {
                     unit: "\u{c5}".to_owned(),
                     position,
                 }),
-                labels: vec![Label { text: label, position }, Label::default()],
+                labels: vec![
+                    Label { text: label, position, at: right.then_some(DVec3::splat(0.1)) },
+                    Label::default(),
+                ],
+                measures: vec![Measure {
+                    points: vec![DVec3::ZERO, DVec3::new(1e-300, 1.0 / 3.0, -7.0)],
+                    unit: "nm".to_owned(),
+                }],
                 lettering: Lettering {
                     size: Some(if right {
                         "7.1pt".parse().unwrap()

@@ -34,12 +34,14 @@ pub(in crate::scene) fn look(look: &Look) -> String {
 
 /// Returns the sections of all annotations; empty if there are none.
 pub(in crate::scene) fn annotations(annotations: &Annotations) -> String {
-    let Annotations { color_bar, legend, axes, scale_bar, labels, lettering } = annotations;
+    let Annotations { color_bar, legend, axes, scale_bar, labels, measures, lettering } =
+        annotations;
     let mut text = color_bar.as_ref().map_or_else(String::new, section_text);
     text += &legend.as_ref().map_or_else(String::new, section_text);
     text += &axes.as_ref().map_or_else(String::new, section_text);
     text += &scale_bar.as_ref().map_or_else(String::new, section_text);
     text.extend(labels.iter().map(section_text));
+    text.extend(measures.iter().map(section_text));
     if *lettering != Lettering::default() {
         text += &section_text(lettering);
     }

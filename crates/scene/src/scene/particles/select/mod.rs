@@ -205,10 +205,26 @@ impl Particles {
         let Some(selection) = style.framed.as_ref().filter(|_| !self.spheres.is_empty()) else {
             return Ok(None);
         };
-        let chosen = selection.some(path, self, false, "looked at")?;
-        let rows = || (0..self.spheres.len()).filter(|row| chosen[*row]);
-        let spheres = || rows().map(|row| (self.spheres.center(row), self.spheres.radius[row]));
-        Ok(FramedSphere::around(spheres))
+        let rows = self.selected(path, selection, false, "looked at")?;
+        let sphere = |&row: &usize| (self.spheres.center(row), self.spheres.radius[row]);
+        Ok(FramedSphere::around(|| rows.iter().map(sphere)))
+    }
+
+    /// Returns the rows of the particles that a condition is true of; `what` happens to them, in the message.
+    ///
+    /// # Errors
+    ///
+    /// The condition names no column there is, compares what cannot be compared, or is true of no particle although that is
+    /// not allowed.
+    pub fn selected(
+        &self,
+        path: &Path,
+        selection: &Selection,
+        allow_empty: bool,
+        what: &str,
+    ) -> Result<Vec<usize>, FileError> {
+        let chosen = selection.some(path, self, allow_empty, what)?;
+        Ok((0..self.spheres.len()).filter(|row| chosen[*row]).collect())
     }
 }
 

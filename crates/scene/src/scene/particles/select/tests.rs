@@ -14,7 +14,11 @@ fn select(content: &str, condition: &str) -> Result<Vec<f64>, String> {
     let selection: Selection = condition
         .parse()
         .map_err(|fault: Fault| format!("{}: {}", &fault.text[fault.span], fault.message))?;
-    let style = ParticleStyle { select: Some(selection), ids: true, ..ParticleStyle::default() };
+    let style = ParticleStyle {
+        select: Some(selection),
+        also_read: vec!["id".to_owned()],
+        ..ParticleStyle::default()
+    };
     let columns = Columns { wanted: style.columns(), ..Columns::default() };
     let options = ReadOptions { columns, ..ReadOptions::default() };
     let mut particles = read(&path, &options).expect("particles");

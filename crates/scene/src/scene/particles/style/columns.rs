@@ -41,6 +41,42 @@ pub(in super::super) enum Column<'p> {
     Texts { names: Vec<&'p str>, codes: Cow<'p, Codes> },
 }
 
+/// Values of a column.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ColumnValues {
+    /// NaN for missing values.
+    Numbers(Vec<f64>),
+    /// Texts.
+    Texts(Vec<String>),
+}
+
+impl Particles {
+    /// Returns the values of a column for these rows; `None` if there is no column of this name that was kept.
+    pub fn column_values(&self, name: &str, rows: &[usize]) -> Option<ColumnValues> {
+        Some(match Column::find(self, name)?.of_rows(rows) {
+            Column::Numbers(values) => ColumnValues::Numbers(values.into_owned()),
+            Column::Texts { names, codes } => {
+                let text = |row| names.get(codes.code(row) as usize).copied().unwrap_or_default();
+                ColumnValues::Texts((0..rows.len()).map(|row| text(row).to_owned()).collect())
+            }
+        })
+    }
+
+    /// Names of the columns that particles can have: those of the file, and those of all particles.
+    pub fn column_names(&self) -> Vec<String> {
+        let own = [ID, INDEX, ELEMENT].into_iter().chain(COMMON.map(|(name, _)| name));
+        let frame = &self.frame;
+        let kept = frame.numbers.iter().map(|column| &column.name);
+        let kept = kept.chain(frame.texts.iter().map(|column| &column.name));
+        let mut names: Vec<String> = frame.columns.iter().chain(kept).cloned().collect();
+        names.extend(own.map(str::to_owned));
+        names.retain(|name| !name.starts_with('\0'));
+        names.sort_unstable();
+        names.dedup();
+        names
+    }
+}
+
 impl<'p> Column<'p> {
     /// Finds a column by name: one that was kept, one with a role, or one that all particles have.
     /// Exact names are preferred to names in another case, and these to other names of the same

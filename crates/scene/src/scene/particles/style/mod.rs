@@ -17,6 +17,7 @@ pub use arrows::{ArrowCentering, ArrowSizes, ArrowStyle, Arrows, VectorColumns};
 pub use categories::Category;
 use colors::Painted;
 pub use colors::{ColumnColors, ElementColors, Legend};
+pub use columns::ColumnValues;
 use columns::SPEED;
 pub(super) use columns::{Column, ID, INDEX, missing, nearest, numbers, unknown};
 pub use ends::{ColorEnd, ColorEnds};
@@ -79,8 +80,8 @@ pub struct ParticleStyle {
     /// Styles of selections, which override all else; later ones win. Selections are of all particles, also of those that
     /// `select` leaves out.
     pub styles: Vec<SelectedStyle>,
-    /// True if ids are read although neither colors nor the selection need them.
-    pub ids: bool,
+    /// Columns that are read although neither colors nor selections need them, as for annotations.
+    pub also_read: Vec<String>,
     /// True if a selection may be empty, a column may have no valid number, and a type may be missing,
     /// as in some frames of a trajectory.
     pub allow_empty: bool,
@@ -183,9 +184,7 @@ impl ParticleStyle {
         columns.extend(self.framed.iter().flat_map(Selection::columns));
         let arrows = self.arrows.iter().flat_map(|arrows| &arrows.columns.0);
         columns.extend(arrows.flat_map(|name| expression::columns(name)));
-        if self.ids {
-            columns.push(ID.to_owned());
-        }
+        columns.extend(self.also_read.iter().cloned());
         columns
     }
 

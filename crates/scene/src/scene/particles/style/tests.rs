@@ -548,7 +548,7 @@ const MOVING: &str = "x,y,z,vx,vy,vz,mass,my-own,kind\n0,0,0,3,4,0,2,5,a\n1,0,0,
 
 /// Returns the numbers of a column or an expression, or the faulty part and the message.
 fn values(content: &str, text: &str) -> Result<Vec<f64>, String> {
-    let style = ParticleStyle { ids: true, ..colored(by(text)) };
+    let style = ParticleStyle { also_read: vec!["id".to_owned()], ..colored(by(text)) };
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("particles");
     std::fs::write(&path, content).expect("a file");
