@@ -1,4 +1,4 @@
-//! Labels and measures at points of the scene: over all spheres, and the nearest last.
+//! Labels and measures at points of the scene, over all spheres: the nearest labels last, and then values of measures.
 
 use super::block;
 use crate::color::Rgb;
@@ -45,18 +45,19 @@ struct Placed {
 
 /// Draws the labels and measures that are at points of the scene.
 pub(super) fn draw(drawing: &mut Drawing, annotations: &Annotations, world: &World, pen: Pen) {
-    let mut texts = Vec::new();
-    for measure in &annotations.measures {
-        lines(drawing, measure, world, pen);
-        texts.extend(text_of(measure, world, pen));
-    }
-    let labels = annotations.labels.iter();
-    texts.extend(labels.filter_map(|label| {
+    annotations.measures.iter().for_each(|measure| lines(drawing, measure, world, pen));
+    let at_point = |label: &Label| {
         let (middle, depth) = project(world, label.at?)?;
         Some(Placed { text: label.text.clone(), middle, depth })
-    }));
-    texts.sort_by(|a, b| b.depth.total_cmp(&a.depth));
-    for Placed { text, middle, .. } in texts {
+    };
+    let mut labels: Vec<Placed> = annotations.labels.iter().filter_map(at_point).collect();
+    let measures = annotations.measures.iter();
+    let mut values: Vec<Placed> =
+        measures.filter_map(|measure| text_of(measure, world, pen)).collect();
+    for texts in [&mut labels, &mut values] {
+        texts.sort_by(|a, b| b.depth.total_cmp(&a.depth));
+    }
+    for Placed { text, middle, .. } in labels.into_iter().chain(values) {
         let label = Label { text, position: Anchor::Top, at: None };
         let block = block::label(&label, pen.letter, pen.ink);
         let half = block.size / 2.0 + MARGIN * pen.letter;
