@@ -3,14 +3,13 @@
 
 use super::client::{Client, Reply, Shot};
 use super::content::Content;
-use super::events::{Action, Purpose};
+use super::events::{Action, Picked, Purpose};
 use super::frame_rate::FrameRate;
 use super::image::Picture;
 use super::listen::Call;
 use super::load::{LoadedScene, Origin};
 use super::loading::Loading;
 use super::options::Options;
-use super::renderer::Picked;
 use super::save::{Saved, encode_picture, raw_picture, save_scene};
 use super::script::{self, Step};
 use super::session;

@@ -89,7 +89,7 @@ pub(super) fn run(args: &ViewerArgs, program: &clap::Command) -> Result<ExitCode
     check_bar(&setup)?;
     let options = Options::of_process(program)?;
     if args.pipe {
-        pipe::open(&setup, options, program)?;
+        pipe::open(&setup, options)?;
         return Ok(ExitCode::SUCCESS);
     }
     let Some(path) = &args.headless_script else {

@@ -23,11 +23,7 @@ use std::thread::{self, JoinHandle};
 ///
 /// # Errors
 /// The scene cannot be loaded, or a thread cannot be started.
-pub(super) fn open(
-    setup: &RenderSetup,
-    options: Options,
-    program: &clap::Command,
-) -> Result<(), Failure> {
+pub(super) fn open(setup: &RenderSetup, options: Options) -> Result<(), Failure> {
     // Of messages alone.
     output::reserve_for_picture();
     let failed = |error| Failure::View(format!("the pipe: {error}"));
@@ -35,7 +31,7 @@ pub(super) fn open(
         FILES.iter().map(|(name, _, text)| ((*name).to_owned(), json!(text))).collect();
     write(&Outgoing::Text(json!({ "page": files }).to_string())).map_err(failed)?;
     let (sender, inputs) = sync_channel(WAITING);
-    let host = Host::start(setup, options, greeting(program), &sender)?;
+    let host = Host::start(setup, options, greeting()?, &sender)?;
     let listen = move || {
         // The reader or the session has ended.
         let _ = listen(&sender);
