@@ -114,16 +114,13 @@ impl Base {
             options.frame = FrameChoice::Index(frame);
         }
         options.columns.wanted.extend(content.color.clone());
-        // Particles are picked by their ids, or without a column of ids by their numbers.
-        let ids = ParticleStyle { also_read: vec!["id".to_owned()], ..ParticleStyle::default() };
-        options.columns.wanted.extend(ids.columns());
         options.columns.rest = Some(VALUES);
         options.progress = progress.read.clone();
         let mut particles = trajectory.read(path, &options, setup.request.style.arrows.as_ref())?;
         let more_columns = path.is_file() && has_many_values(&particles);
         // All else is applied to the particles of each picture.
         let (select, model) = (setup.request.style.select.clone(), Some(Model::SpaceFilling));
-        let select = ParticleStyle { select, model, ..ids };
+        let select = ParticleStyle { select, model, ..ParticleStyle::default() };
         select.apply(path, &mut particles)?;
         compose::repeat(setup.request.cell, path, &mut particles)?;
         options.progress = ReadProgress::default();

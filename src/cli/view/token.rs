@@ -57,8 +57,9 @@ fn is_private(path: &Path) -> bool {
     {
         use std::os::unix::fs::MetadataExt;
         let user = rustix::process::getuid().as_raw();
-        path.symlink_metadata()
-            .is_ok_and(|data| data.is_file() && data.uid() == user && data.mode() & 0o077 == 0)
+        path.symlink_metadata().is_ok_and(|data| {
+            data.is_file() && data.uid() == user && data.mode().trailing_zeros() >= 6
+        })
     }
     #[cfg(not(unix))]
     path.is_file()
