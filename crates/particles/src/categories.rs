@@ -133,7 +133,7 @@ pub struct Kind {
     pub name: String,
     /// The element, if the file declares it or the name implies it.
     pub element: Option<Element>,
-    /// Where the element is known from; meaningless without one.
+    /// Source of the element; meaningless without one.
     pub source: ElementSource,
     /// True for a virtual site of a water model, with a charge or mass but no atom (`MW`, `M`, `EP`,
     /// `LP`), which is not drawn.

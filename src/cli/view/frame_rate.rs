@@ -37,7 +37,7 @@ pub(super) struct Moving {
 /// Sizes of previews.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum FrameRate {
-    /// Always the size of the window, so that scripts have the same results on every machine.
+    /// Always the size of the page's image, so that scripts have the same results on every machine.
     Whole,
     /// As large as the time budget allows; shadows are left out before pixels are.
     Measured {
@@ -93,10 +93,10 @@ fn pixels((width, height): (u32, u32)) -> f64 {
     f64::from(width) * f64::from(height)
 }
 
-/// Returns a size of about this many pixels, with the aspect ratio of the window and no larger.
+/// Returns a size of about this many pixels, with the aspect ratio of the whole and no larger.
 fn shrunk(whole: (u32, u32), count: f64) -> (u32, u32) {
     let factor = (count.max(LEAST) / pixels(whole)).sqrt();
-    // A size close to the window's is rounded up.
+    // A size close to the whole is rounded up.
     if factor > 0.8 {
         return whole;
     }

@@ -38,7 +38,7 @@ const EARLY: usize = 1000;
 /// Size of the image before a page says its own.
 const SIZE: (u32, u32) = (1280, 720);
 
-/// What the session handles.
+/// Inputs of the session.
 pub(super) enum Input {
     Call(Call),
     Message(Message),

@@ -22,7 +22,7 @@ pub(super) struct Head {
     pub(super) key: Option<String>,
 }
 
-/// What keeps others out: the secret part of the path, and the name that was listened at.
+/// Guard against others: the secret part of the path, and the name that was listened at.
 #[derive(Clone, Debug)]
 pub(super) struct Door {
     pub(super) token: String,

@@ -25,7 +25,7 @@ pub(super) const FILES: [(&str, &str, &str); 4] = [
     ("icon.svg", "image/svg+xml", include_str!("page/icon.svg")),
 ];
 
-/// What pages do.
+/// Actions of pages.
 pub(super) enum Call {
     Joined(u64, Arc<Client>),
     /// A page sent a command.

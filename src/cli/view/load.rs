@@ -236,7 +236,7 @@ impl Reading {
 /// Loads one stage after another, and keeps what was read last unless it is large.
 #[derive(Default)]
 pub(super) struct Loader {
-    /// What was read last, if something was.
+    /// The last thing that was read, if any.
     reading: Option<Reading>,
     base: Option<Base>,
     /// The choices that all frames have in common.

@@ -1,4 +1,4 @@
-//! What a page is told: the state of the viewer, and once the commands and options that there are.
+//! Facts for pages: the state of the viewer, and once the commands and options that there are.
 
 use super::keys;
 use super::options::{Options, command, topics};

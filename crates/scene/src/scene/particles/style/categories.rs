@@ -16,7 +16,7 @@ pub struct Category {
     pub color: Rgb,
     /// Number of particles.
     pub count: u64,
-    /// What the name is: a column or an expression, `element` or `selection`.
+    /// Meaning of the name: a column or an expression, `element` or `selection`.
     pub source: String,
     /// The selection whose style has the color; empty for the colors of all particles.
     pub selection: String,
