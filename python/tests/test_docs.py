@@ -65,7 +65,7 @@ def literals(annotation):
 
 def test_every_key_of_scene_files_is_a_typed_argument():
     keys, words, top = documented()
-    assert len(keys) == 23 and len(words) > 8 and top == {"title", *keys}
+    assert len(keys) == 24 and len(words) > 8 and top == {"title", *keys}
     # `color_bar` takes more than its section; `from`, a keyword of Python, cannot be a key of these classes.
     assert set(typing.get_type_hints(sections.Sections)) | {"color_bar"} == top
     assert _options.SECTIONS | {"color_bar"} == top and _options.RENDER == keys["render"]

@@ -103,7 +103,7 @@ impl<'a> Contestant<'a> {
 fn measure_case(case: &Case, options: &Options, progress: Progress) -> Result<Outcome, BenchError> {
     let Case { scene, variants } = case;
     let world = scene.world()?;
-    let samples = options.pick([16, 1024, 1 << 14]);
+    let samples = options.pick([64, 1024, 1 << 14]);
     progress(&format!("error: {}, reference of 2 x {samples} samples per pixel", scene.name));
     let reference = Reference::new(scene, &world, samples, options.references.as_deref())?;
     let contestants = variants.iter().map(|variant| Contestant::new(scene, variant));
@@ -123,7 +123,7 @@ fn measure_case(case: &Case, options: &Options, progress: Progress) -> Result<Ou
         let mut goal = Settings { spp: levels[level], seed, until_error: None, ..own.clone() };
         if let Some(first) = qualities[level].last().filter(|_| contestant.variant.adaptive) {
             goal.until_error = Some(reference.relative_to_mean(first.squares).clamp(1e-6, 1.0));
-            goal.spp = options.pick([32, Settings::HARD_SAMPLES, Settings::HARD_SAMPLES]);
+            goal.spp = options.pick([64, Settings::HARD_SAMPLES, Settings::HARD_SAMPLES]);
         }
         let (seconds, quality) = contestant.turn(&goal, &world, &reference)?;
         qualities[i].push(quality);

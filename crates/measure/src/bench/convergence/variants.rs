@@ -83,7 +83,7 @@ const fn whitted(shadow_samples: u32) -> Integrator {
 pub(super) fn cases(options: &Options) -> Result<Vec<Case>, BenchError> {
     let usual = [FIELD, "smallpt", "veach", "paper-field-20"];
     let scenes = NamedScene::choose(options, &usual[..options.pick([1, 2, 4])])?;
-    let resized = |scene: NamedScene| scene.resized(options.pick([16, 64, 160]));
+    let resized = |scene: NamedScene| scene.resized(options.pick([24, 64, 160]));
     let scenes: Vec<_> = scenes.into_iter().map(resized).collect();
     let mut cases = Vec::new();
     for scene in &scenes {
