@@ -44,6 +44,7 @@ def fake(tmp_path, monkeypatch):
     program.write_text(f'#!/bin/sh\nprintf "%s\\n" "$@" > {tmp_path}/said\ncat "$2" > {tmp_path}/shown\n')
     program.chmod(program.stat().st_mode | stat.S_IXUSR)
     monkeypatch.setattr("spherule._program.sysconfig.get_path", lambda _: str(program.parent))
+    monkeypatch.delenv("SPHERULE", raising=False)
     monkeypatch.setenv("PYTHONPATH", os.path.dirname(os.path.dirname(spherule.__file__)))
     return tmp_path
 
