@@ -260,8 +260,8 @@ fn packed(shot: &Shot, before: Option<&Picture>, pace: Pace) -> Vec<u8> {
         // Previews are compared with nothing: all of them changes while the camera moves.
         let same = before.filter(|own| own.size() == (width, height) && !is_preview);
         let tiles = match same {
-            Some(own) => tiles::changed(&own.pixels, &picture.pixels, (width, height)),
-            None => tiles::strips((width, height), STRIPS),
+            Some(own) => tiles::changed(&own.pixels, &picture.pixels, width),
+            None => tiles::strips(width, height, STRIPS),
         };
         let quality = if is_preview { pace.moving() } else { pace.resting() };
         let files = tiles::encode(&picture.pixels, width, &tiles, quality);

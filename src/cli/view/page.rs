@@ -21,7 +21,7 @@ use std::thread;
 const LOOPBACK: &str = "127.0.0.1";
 
 /// Maximum number of inputs that wait: pages that send more wait, too.
-pub(super) const WAITING: usize = 256;
+pub(super) const QUEUE_LENGTH: usize = 256;
 
 /// Serves the page of the setup's scene, opens a browser where there is a display, and runs until the process ends.
 ///
@@ -36,7 +36,7 @@ pub(super) fn open(
     let listener = listen(name, args.port.unwrap_or(0))?;
     let at = listener.local_addr().map_err(|error| Failure::View(format!("{name}: {error}")))?;
     let token = token(args.port.filter(|port| *port > 0))?;
-    let (sender, inputs) = sync_channel::<Input>(WAITING);
+    let (sender, inputs) = sync_channel::<Input>(QUEUE_LENGTH);
     let host = Host::start(setup, options, greeting()?, &sender)?;
     announce(name, at, &token, args.no_browser);
     let door = Arc::new(Door { token, address: name.to_owned() });

@@ -8,7 +8,7 @@ use super::client::{Client, Outgoing, deliver};
 use super::host::{Host, Input};
 use super::listen::{Call, FILES};
 use super::options::Options;
-use super::page::WAITING;
+use super::page::QUEUE_LENGTH;
 use super::state::greeting;
 use crate::cli::failure::Failure;
 use crate::cli::output;
@@ -30,7 +30,7 @@ pub(super) fn open(setup: &RenderSetup, options: Options) -> Result<(), Failure>
     let files: Map<String, Value> =
         FILES.iter().map(|(name, _, text)| ((*name).to_owned(), json!(text))).collect();
     write(&Outgoing::Text(json!({ "page": files }).to_string())).map_err(failed)?;
-    let (sender, inputs) = sync_channel(WAITING);
+    let (sender, inputs) = sync_channel(QUEUE_LENGTH);
     let host = Host::start(setup, options, greeting()?, &sender)?;
     let listen = move || {
         // The reader or the session has ended.

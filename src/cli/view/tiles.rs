@@ -19,14 +19,15 @@ pub(super) struct Tile {
 }
 
 /// Divides an image into about `count` strips of all columns.
-pub(super) fn strips((width, height): (u32, u32), count: u32) -> Vec<Tile> {
+pub(super) fn strips(width: u32, height: u32, count: u32) -> Vec<Tile> {
     let rows = height.div_ceil(count.max(1)).next_multiple_of(BLOCK);
     let strip = |y: u32| Tile { x: 0, y, width, height: rows.min(height - y) };
     (0..height).step_by(rows as usize).map(strip).collect()
 }
 
 /// Returns the tiles in which two images of one size differ.
-pub(super) fn changed(before: &[u32], now: &[u32], (width, height): (u32, u32)) -> Vec<Tile> {
+pub(super) fn changed(before: &[u32], now: &[u32], width: u32) -> Vec<Tile> {
+    let height = now.len() as u32 / width.max(1);
     let columns = || (0..width).step_by(SIDE as usize);
     let all = (0..height)
         .step_by(SIDE as usize)
@@ -69,7 +70,7 @@ mod tests {
     #[test]
     fn strips_cover_the_image_once() {
         for (size, count) in [((1280, 720), 2), ((17, 33), 4), ((1, 1), 8), ((640, 16), 3)] {
-            let strips = strips(size, count);
+            let strips = strips(size.0, size.1, count);
             let mut y = 0;
             for strip in &strips {
                 assert_eq!((strip.x, strip.y, strip.width), (0, y, size.0));
@@ -84,9 +85,9 @@ mod tests {
         let (width, height) = (300, 200);
         let before = vec![0; width * height];
         let mut now = before.clone();
-        assert_eq!(changed(&before, &now, (300, 200)), []);
+        assert_eq!(changed(&before, &now, 300), []);
         (now[299], now[130 * width + 5]) = (1, 1);
-        let tiles = changed(&before, &now, (300, 200));
+        let tiles = changed(&before, &now, 300);
         let tile = |x, y, width, height| Tile { x, y, width, height };
         assert_eq!(tiles, [tile(256, 0, 44, 128), tile(0, 128, 128, 72)]);
     }
