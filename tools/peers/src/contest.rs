@@ -8,7 +8,7 @@ use crate::scenes::Columns;
 use cpu_time::ThreadTime;
 use serde::Serialize;
 use spherule_core::SphereTree;
-use spherule_core::{Hit, Hits, NOTHING, QueryError, Surface};
+use spherule_core::{Hits, NOTHING, QueryError, Surface};
 use std::error::Error;
 use std::time::Duration;
 
@@ -221,11 +221,9 @@ impl Contest<'_> {
                     let (origin, direction) = rays.row(i);
                     let (origin, direction) = (origin.into(), direction.into());
                     let bound = f64::from(rays.bound(i));
-                    let nearer = |hit: &Hit| hit.t < bound;
                     if class.is_any() {
                         answers.occluded[i] = self.tree.occluded(origin, direction, bound);
-                    } else if let Some(hit) = self.tree.intersect(origin, direction).filter(nearer)
-                    {
+                    } else if let Some(hit) = self.tree.intersect_within(origin, direction, bound) {
                         let surface = Surface { point: hit.point, normal: hit.normal };
                         (answers.spheres[i], answers.spherule_t[i]) = (hit.sphere, hit.t);
                         answers.surfaces[i] = surface;

@@ -66,13 +66,13 @@ impl PlainRay {
         RaySlabs::of_row(self.origin, self.direction)
     }
 
-    /// Finds the first hit.
+    /// Finds the first hit at a distance less than `bound`.
     #[inline(always)]
-    pub fn intersect(&self, tree: Tree) -> PlainAnswer {
+    pub fn intersect(&self, tree: Tree, bound: f64) -> PlainAnswer {
         let mut search = DeferredSearch {
             spheres: tree.spheres,
             ray: self.conservative(),
-            hit: DeferredHit::new::<ClosestRounded>((f32::INFINITY, f32::INFINITY)),
+            hit: DeferredHit::new::<ClosestRounded>(rounded_out(bound as f32)),
         };
         match walk::<_, SMALL_STACK>(tree.bvh, tree.spheres.blocks(), &self.slabs(), &mut search) {
             Some(()) => search.decide(self),
@@ -145,7 +145,7 @@ impl DeferredSearch<'_> {
         let (center, radius) = (self.spheres.center(sphere), self.spheres.radius(sphere));
         let exact = ray.exact();
         let pair = Pairs::one(&exact, center.as_dvec3(), f64::from(radius));
-        // Nothing beyond `t_max` was tested.
+        // Nothing beyond `t_max` was tested; until there is a runner-up, its distance is no more than the bound.
         let other = f64::from(runner_up.min(nearest.t_max));
         let is_first = |t: f64| t * (1.0 + CLEAR) < other;
         let coarse = vector(ray.origin).is_coarse() && Vec3::from(center).is_coarse();
@@ -242,7 +242,7 @@ mod tests {
             let plain = ray(random.in_cube() * far, random.in_cube());
             let exact = plain.exact();
             let expected = trace_one::<ClosestRounded>(tree, &exact, f64::INFINITY);
-            match plain.intersect(tree) {
+            match plain.intersect(tree, f64::INFINITY) {
                 PlainAnswer::Miss => assert_eq!(expected.sphere, MISS),
                 PlainAnswer::Undecided => undecided += 1,
                 PlainAnswer::Hit(PlainHit { sphere, t, .. }) => {
@@ -252,6 +252,11 @@ mod tests {
                     hits += 1;
                     for (bound, occluded) in [(t * 0.5, false), (t * 1.001, true)] {
                         assert_eq!(plain.occluded(tree, bound), Some(occluded));
+                        match plain.intersect(tree, bound) {
+                            PlainAnswer::Hit(hit) => assert!(occluded && hit.t == t),
+                            PlainAnswer::Miss => assert!(!occluded),
+                            PlainAnswer::Undecided => undecided += 1,
+                        }
                     }
                 }
             }
@@ -267,7 +272,7 @@ mod tests {
         let (spheres, bvh) = (Spheres::default(), crate::bvh::Bvh::default());
         let (tree, plain) =
             (Tree { bvh: &bvh, spheres: &spheres }, ray(glam::DVec3::ZERO, glam::DVec3::X));
-        assert!(matches!(plain.intersect(tree), PlainAnswer::Miss));
+        assert!(matches!(plain.intersect(tree, 1.0), PlainAnswer::Miss));
         assert_eq!(plain.occluded(tree, 1.0), Some(false));
     }
 }

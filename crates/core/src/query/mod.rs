@@ -234,17 +234,56 @@ impl SphereTree {
     #[inline(never)]
     fn intersect_numbers(&self, x: f32, y: f32, z: f32, dx: f32, dy: f32, dz: f32) -> Option<Hit> {
         let (origin, direction) = ([x, y, z], [dx, dy, dz]);
-        let hit = self.intersect_plain(origin, direction);
-        hit.unwrap_or_else(|_| self.intersect_closely(origin, direction))
+        let hit = self.intersect_plain(origin, direction, f64::INFINITY);
+        hit.unwrap_or_else(|_| self.intersect_closely(origin, direction, f64::INFINITY))
     }
 
-    /// Does what [`SphereTree::intersect`] does for any ray.
+    /// Returns what [`SphereTree::intersect`] does if it is hit at a distance less than `t_max`, in units of the direction's
+    /// length: what lies farther is not looked at. A true distance that is less by no more than half a unit of the last place
+    /// is rounded to `t_max`. `None` if `t_max` is NaN.
+    ///
+    /// ```
+    /// let tree = spherule_core::SphereTree::from_columns(&[0.0], &[0.0], &[5.0], &[1.0])?;
+    /// let hit = |t_max| tree.intersect_within([0.0; 3], [0.0, 0.0, 2.0], t_max).map(|hit| hit.t);
+    /// assert_eq!([hit(1.0), hit(2.0), hit(2.5)], [None, None, Some(2.0)]);
+    /// # Ok::<(), spherule_core::QueryError>(())
+    /// ```
+    #[inline]
+    pub fn intersect_within(
+        &self,
+        origin: [f32; 3],
+        direction: [f32; 3],
+        t_max: f64,
+    ) -> Option<Hit> {
+        let ([x, y, z], [dx, dy, dz]) = (origin, direction);
+        self.intersect_numbers_within(x, y, z, dx, dy, dz, t_max)
+    }
+
+    /// [`SphereTree::intersect_within`] for numbers in registers, as [`SphereTree::intersect_numbers`].
     #[inline(never)]
-    fn intersect_closely(&self, origin: [f32; 3], direction: [f32; 3]) -> Option<Hit> {
+    #[expect(clippy::too_many_arguments, reason = "a struct would go through memory")]
+    fn intersect_numbers_within(
+        &self,
+        x: f32,
+        y: f32,
+        z: f32,
+        dx: f32,
+        dy: f32,
+        dz: f32,
+        t_max: f64,
+    ) -> Option<Hit> {
+        let (origin, direction) = ([x, y, z], [dx, dy, dz]);
+        let hit = self.intersect_plain(origin, direction, t_max);
+        hit.unwrap_or_else(|_| self.intersect_closely(origin, direction, t_max))
+    }
+
+    /// Does what [`SphereTree::intersect_within`] does for any ray.
+    #[inline(never)]
+    fn intersect_closely(&self, origin: [f32; 3], direction: [f32; 3], t_max: f64) -> Option<Hit> {
         let ray = (origin, direction);
-        let scaled = ScaledRay::new(ray, self.scale)?;
+        let scaled = ScaledRay::new(ray, self.scale).filter(|_| !t_max.is_nan())?;
         let tally = &mut Tally::default();
-        let found = self.trace_scaled::<ClosestRounded>(ray, &scaled, f64::INFINITY, tally)?;
+        let found = self.trace_scaled::<ClosestRounded>(ray, &scaled, t_max, tally)?;
         let Surface { point, normal } = self.surface(ray, &scaled, &found);
         Some(Hit { sphere: found.id, t: found.t, point, normal })
     }

@@ -30,15 +30,19 @@ impl SphereTree {
         plain.then_some((PlainRay { origin: moved, direction: turned }, shrink))
     }
 
-    /// Does what [`SphereTree::intersect`] does, for almost all rays.
+    /// Does what [`SphereTree::intersect_within`] does, for almost all rays.
     #[inline(always)]
     pub(super) fn intersect_plain(
         &self,
         origin: [f32; 3],
         direction: [f32; 3],
+        t_max: f64,
     ) -> Result<Option<Hit>, Undecided> {
+        if t_max.is_nan() {
+            return Err(Undecided);
+        }
         let (ray, shrink) = self.plain_ray(origin, direction).ok_or(Undecided)?;
-        match ray.intersect(self.tree()) {
+        match ray.intersect(self.tree(), t_max * self.scale[0] * f64::from(shrink.recip())) {
             PlainAnswer::Miss => Ok(None),
             PlainAnswer::Undecided => Err(Undecided),
             PlainAnswer::Hit(hit) => {

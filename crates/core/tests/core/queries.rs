@@ -6,7 +6,9 @@ use proptest::prelude::*;
 use spherule_core::internals::exact::{self, Distance};
 use spherule_core::internals::random::Random;
 use spherule_core::internals::ray::ExactRay;
-use spherule_core::{Hits, NOTHING, QueryError, RayColumns, RayRows, SphereTree, Surface, Tally};
+use spherule_core::{
+    Hit, Hits, NOTHING, QueryError, RayColumns, RayRows, SphereTree, Surface, Tally,
+};
 use std::cmp::Ordering;
 
 type Sphere = [f32; 4];
@@ -110,6 +112,21 @@ fn traced(tree: &SphereTree, rays: &[Ray]) -> Traced {
     found
 }
 
+/// Checks that a single call with a bound finds what a batch of one ray finds, near a distance and elsewhere.
+fn check_bounds(tree: &SphereTree, (origin, direction): Ray, t: f64) {
+    let ray = RayRows { origin: &[origin], direction: &[direction] };
+    for bound in [0.5 * t, t.next_down(), t, t.next_up(), 1.001 * t, 1e300, 0.0, -1.0, f64::NAN] {
+        let (mut t, mut sphere, mut surface) = ([bound], [0], [Surface::default()]);
+        let hits = Hits { t: &mut t, sphere: &mut sphere, surface: Some(&mut surface) };
+        tree.intersect_rows(&ray, hits).expect("one row of each");
+        let expected = (sphere[0] != NOTHING).then_some((sphere[0], t[0], surface[0]));
+        let hit = tree.intersect_within(origin, direction, bound);
+        let found =
+            hit.map(|Hit { sphere, t, point, normal }| (sphere, t, Surface { point, normal }));
+        assert_eq!(found, expected, "{origin:?} {direction:?} {bound}");
+    }
+}
+
 fn check(spheres: &[Sphere], rays: &[Ray]) {
     let tree = SphereTree::from_rows(spheres).expect("few spheres");
     let valid = spheres.iter().filter(|sphere| is_valid(sphere)).count();
@@ -124,6 +141,7 @@ fn check(spheres: &[Sphere], rays: &[Ray]) {
         assert_eq!(got.map(|hit| hit.0), expected.map(|hit| hit.0), "{ray:?} {spheres:?}");
         let single = tree.intersect(ray.0, ray.1);
         assert_eq!(single.map(|hit| (hit.sphere, hit.t)), got);
+        check_bounds(&tree, ray, t[i]);
         let Some((_, expected)) = expected else {
             assert!(!tree.occluded(ray.0, ray.1, f64::INFINITY));
             continue;
