@@ -51,7 +51,7 @@ def test_arrays_out_are_the_renderers_memory(cloud):
 
 
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="there is no /proc")
-def test_a_thousand_renders_need_no_more_than_a_hundred():
+def test_four_hundred_renders_need_no_more_than_a_hundred():
     def resident() -> int:
         return int(Path("/proc/self/statm").read_text().split()[1]) * 4096
 
@@ -59,10 +59,11 @@ def test_a_thousand_renders_need_no_more_than_a_hundred():
 
     def renders(count):
         for _ in range(count):
-            spherule.render(positions, radius=0.01, size=(64, 48), spp=1, layers=["depth"])
+            spherule.render(positions, radius=0.01, size=(64, 48), spp=1, layers=["depth"], threads=1)
         gc.collect()
         return resident()
 
     before = renders(100)
-    after = renders(900)
-    assert after - before < 8 << 20, f"{(after - before) / 2**20:.1f} MiB more"
+    after = renders(300)
+    # A tenth of their pictures.
+    assert after - before < 1 << 20, f"{(after - before) / 2**20:.1f} MiB more"

@@ -227,7 +227,7 @@ def test_sizes_on_paper_are_those_of_the_program(program, tmp_path, cloud):
 
 
 def test_refinement_ends_with_the_picture(cloud):
-    options = {"radius": 0.05, "size": (160, 120), "spp": 64}
+    options = {"radius": 0.05, "size": (120, 90), "spp": 32}
     pictures = list(spherule.refine(cloud, 0.01, **options))
     assert len(pictures) > 1 and not pictures[0].complete
     assert pictures[-1].complete
@@ -276,7 +276,7 @@ def test_renders_of_several_threads_are_equal(cloud):
 
 def test_progress_is_told_and_its_errors_are_raised(cloud):
     told = []
-    options = {"radius": 0.05, "size": (300, 200), "spp": 200}
+    options = {"radius": 0.05, "size": (150, 100), "spp": 100}
     spherule.render(cloud, progress=lambda *facts: told.append(facts), **options)
     assert told and all(0 <= done <= 1 and rays > 0 and seconds > 0 for done, rays, seconds, _ in told)
 

@@ -24,9 +24,15 @@ def rays():
 def exact_hit(positions, radius, origin, direction):
     """The sphere that a ray hits first, decided on fractions; distances are compared by their quadratics' roots."""
     best = None
+    # Rays that miss by far are not worth their fractions: doubles err by far less than this.
+    from_centers = origin.astype(np.float64) - positions
+    along = from_centers @ direction.astype(np.float64)
+    square = (direction.astype(np.float64) ** 2).sum()
+    inside = along**2 - square * ((from_centers**2).sum(axis=1) - radius.astype(np.float64) ** 2)
     o, d = ([Fraction(float(value)) for value in row] for row in (origin, direction))
     a = sum(x * x for x in d)
-    for row, (center, r) in enumerate(zip(positions, radius)):
+    for row in np.flatnonzero(inside > -1e-9 * square):
+        center, r = positions[row], radius[row]
         c = [x - Fraction(float(y)) for x, y in zip(o, center)]
         b = sum(x * y for x, y in zip(c, d))
         q = sum(x * x for x in c) - Fraction(float(r)) ** 2

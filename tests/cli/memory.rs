@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 const COUNT: usize = 500_000;
 
 /// Number of rows of files of text, which still dominate.
-const ROWS: usize = 200_000;
+const ROWS: usize = 120_000;
 
 /// Arguments of an image that is small enough for spheres to dominate.
 const TINY: [&str; 7] = ["--size", "32x24", "--spp", "1", "--quiet", "-o", "x.png"];
@@ -48,12 +48,12 @@ fn rows(head: &str, count: usize, row: impl Fn(usize, [f64; 3]) -> String) -> St
 fn estimates_are_right_for_every_generator() {
     let folder = Folder::new();
     let kinds = [
-        "kind = \"grid\"\ncount = 707",
-        "kind = \"field\"\ncount = 707",
-        "kind = \"field\"\ncount = 707\ncolors = false",
-        "kind = \"field\"\ncount = 707\nmix = [3, 2, 1]",
-        "kind = \"volume\"\ncount = 500000\ncolors = true",
-        "kind = \"lattice\"\ncount = 50",
+        "kind = \"grid\"\ncount = 500",
+        "kind = \"field\"\ncount = 500",
+        "kind = \"field\"\ncount = 500\ncolors = false",
+        "kind = \"field\"\ncount = 500\nmix = [3, 2, 1]",
+        "kind = \"volume\"\ncount = 250000\ncolors = true",
+        "kind = \"lattice\"\ncount = 40",
         "kind = \"sphereflake\"\nlevel = 6",
         "kind = \"volume\"\ncount = 200000\nmaterial = \"emitter\"",
     ];
@@ -63,7 +63,7 @@ fn estimates_are_right_for_every_generator() {
         estimated(&folder, "a.toml", &["--builder", "auto"]);
     }
     for builder in ["morton", "median", "surface-area"] {
-        folder.write("b.toml", "[[generate]]\nkind = \"volume\"\ncount = 300000\n");
+        folder.write("b.toml", "[[generate]]\nkind = \"volume\"\ncount = 200000\n");
         estimated(&folder, "b.toml", &["--builder", builder]);
     }
 }
@@ -150,8 +150,7 @@ fn estimates_are_right_for_large_pictures() {
         (None, "a.exr", Some("all")),
     ] {
         let layers = layers.map_or(Vec::new(), |layers| vec!["--layers", layers]);
-        let args =
-            ["render", "--size", "1000x700", "--spp", "1", "--quiet", "--json", "-o", output];
+        let args = ["render", "--size", "800x500", "--spp", "1", "--quiet", "--json", "-o", output];
         let report = folder.json(&[&args[..], &Vec::from_iter(scene), &layers].concat());
         let number = |name: &str| report["statistics"][name].as_f64().expect("a number");
         let ratio = number("estimated_peak_bytes") / number("peak_bytes");

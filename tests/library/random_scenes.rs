@@ -127,7 +127,8 @@ fn bytes_do_not_depend_on_how_images_are_rendered() {
             |options: &Options| render(&world, settings, options).expect("settings in range").image;
         let whole = image(&usual);
         assert!(whole.pixels.iter().flatten().all(|x| (0.0..f32::INFINITY).contains(x)), "{seed}");
-        for options in &options() {
+        // Each option on a third of the scenes.
+        for options in options().iter().skip(seed as usize % 3).step_by(3) {
             let what = (options.tracer, options.elisions);
             assert!(image(options) == whole, "scene {seed}: {what:?}");
         }

@@ -182,7 +182,7 @@ fn sampling_one_light_equals_the_sum_over_all() {
         look(&mut scene, DVec3::new(4.0, -4.0, 3.0), DVec3::new(0.0, 0.0, 0.7), 40.0);
         scene.settings.depth = Some(1);
         let [path, whitted] =
-            [(Integrator::Path, 128), (Integrator::Whitted { shadow_samples: 1 }, 8)].map(
+            [(Integrator::Path, 64), (Integrator::Whitted { shadow_samples: 1 }, 4)].map(
                 |(integrator, spp)| {
                     scene.settings.integrator = integrator;
                     scene.settings.spp = spp;

@@ -645,12 +645,10 @@ fn damaged_files_do_not_panic_or_take_memory() {
         let step = (content.len() / 60).max(311);
         let places = (0..content.len().min(300)).chain((300..content.len()).step_by(step));
         for place in places {
-            for value in [0xFF, content[place] ^ 1] {
-                let mut damaged = content.clone();
-                damaged[place] = value;
-                let (read, count) = read_all(&path, &damaged);
-                assert!(count.is_err() || read <= content.len() as u64, "{name} {place}");
-            }
+            let mut damaged = content.clone();
+            damaged[place] = if place % 2 == 0 { 0xFF } else { content[place] ^ 1 };
+            let (read, count) = read_all(&path, &damaged);
+            assert!(count.is_err() || read <= content.len() as u64, "{name} {place}");
         }
     }
 }

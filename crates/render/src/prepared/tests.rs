@@ -207,11 +207,11 @@ fn damaged_files_are_refused() {
 
 #[test]
 fn forged_files_neither_panic_nor_hang() {
-    let saved = save(&field_of(120), Builder::default());
+    let saved = save(&field_of(40), Builder::default());
     let bytes = fs::read(&saved.path).expect("it was written");
     let content = bytes.len() - HASH_BYTES as usize;
     let (mut refused, mut read_anyway) = (0, 0);
-    for at in (MAGIC.len() + 12..content).step_by(7) {
+    for at in (MAGIC.len() + 12..content).step_by(17) {
         for value in [0, 0x7F, 0xFF] {
             let mut forged = bytes.clone();
             forged[at] = value;

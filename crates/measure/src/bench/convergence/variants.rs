@@ -96,7 +96,9 @@ pub(super) fn cases(options: &Options) -> Result<Vec<Case>, BenchError> {
     }
     if options.scenes.is_empty() {
         let field = &scenes[0];
-        cases.extend(several_lights(&changed(field, "night", night))?);
+        let every = options.pick([64, 8, 8]);
+        let night = changed(field, "night", |scene| night(scene, every));
+        cases.extend(several_lights(&night)?);
         cases.push(direct(field));
         cases.push(Case { scene: changed(field, "sky", chalk_under_the_sky), variants: &SKY });
     }
@@ -130,14 +132,14 @@ fn direct(scene: &NamedScene) -> Case {
     Case { scene: changed(scene, "direct", change), variants: &DIRECT }
 }
 
-/// Makes every eighth sphere an emitter, without other lights.
-fn night(scene: &mut Scene) {
+/// Makes an emitter of one in some spheres, without other lights. One variant samples all of them at each hit.
+fn night(scene: &mut Scene, every: usize) {
     scene.lights.clear();
     scene.environment.map = EnvironmentMap::Constant(Rgb::ZERO);
     let emitter = scene.materials.len() as u32;
     let material = Material::Emitter { radiance: Rgb::splat(8.0), albedo: Rgb::ZERO };
     scene.materials.push(NamedMaterial { name: "lamp".to_owned(), material });
-    scene.spheres.material.iter_mut().step_by(8).for_each(|material| *material = emitter);
+    scene.spheres.material.iter_mut().step_by(every).for_each(|material| *material = emitter);
 }
 
 fn chalk_under_the_sky(scene: &mut Scene) {
