@@ -20,8 +20,11 @@ use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Names of the columns, with their byte ranges.
-const COLUMNS: [(&str, usize, usize); 15] = [
+/// A column of a row: its name and its bytes.
+type Column = (&'static str, usize, usize);
+
+/// The columns that all rows have.
+const COLUMNS: [Column; 12] = [
     ("number", 6, 11),
     ("name", 12, 16),
     ("altloc", 16, 17),
@@ -34,10 +37,14 @@ const COLUMNS: [(&str, usize, usize); 15] = [
     ("z", 46, 54),
     ("occupancy", 54, 60),
     ("b_factor", 60, 66),
-    ("segment", 72, 76),
-    ("element", 76, 78),
-    ("charge", 78, 80),
 ];
+
+/// The columns after those.
+const OF_PDB: [Column; 3] = [("segment", 72, 76), ("element", 76, 78), ("charge", 78, 80)];
+
+/// The columns in their place in PDBQT, in which charges are partial ones and types those of `AutoDock`
+/// (<https://autodock.scripps.edu>).
+const OF_PDBQT: [Column; 2] = [("charge", 70, 76), ("atom_type", 77, 80)];
 
 /// Columns of texts, even if the texts look like numbers.
 const TEXTS: [&str; 10] = [
@@ -50,7 +57,7 @@ const TEXTS: [&str; 10] = [
     "insertion",
     "segment",
     "element",
-    "charge",
+    "atom_type",
 ];
 
 /// Record names that identify a PDB file.
@@ -64,6 +71,9 @@ const RECORDS: [&[u8]; 18] = [
 pub(crate) struct Pdb {
     lines: Lines,
     schema: Result<Arc<Schema>, String>,
+    /// The columns of rows, with the indices that the schema has.
+    columns: Vec<Column>,
+    is_pdbqt: bool,
     cell: Option<Cell>,
     /// True if each `CRYST1` follows its model, as it does if none precedes the first model.
     cell_follows: bool,
@@ -113,14 +123,18 @@ impl Record {
 
 impl Pdb {
     pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
-        let names = COLUMNS.map(|(name, ..)| name.to_owned()).into();
+        let is_pdbqt = is_pdbqt(&source.head);
+        let further = if is_pdbqt { &OF_PDBQT[..] } else { &OF_PDB };
+        let columns = [&COLUMNS, further].concat();
+        let names = columns.iter().map(|(name, ..)| (*name).to_owned()).collect();
         let schema = Schema::new(names, options);
         let typed = options.columns.roles.iter().any(|(role, _)| *role == Role::Kind);
         let named = |schema| Arc::new(if typed { schema } else { of_atom_names(schema) });
         let lines = Lines::new(source);
         let title = String::new();
         let bonds = options.reads_bonds().then_some(BondRecords { last: None });
-        Self { lines, schema: schema.map(named), cell: None, cell_follows: false, title, bonds }
+        let schema = schema.map(named);
+        Self { lines, schema, columns, is_pdbqt, cell: None, cell_follows: false, title, bonds }
     }
 }
 
@@ -128,7 +142,10 @@ impl FrameReader for Pdb {
     fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
         let schema = self.schema.clone().map_err(|message| self.lines.ended(message))?;
         let mut builder = Builder::new(self.lines.path(), Format::Pdb, &schema);
-        builder.declare(&TEXTS, &["occupancy", "b_factor"]);
+        let numbers = &["occupancy", "b_factor", "charge"];
+        // The charge of PDB is a text such as `2-`.
+        builder.declare(if self.is_pdbqt { &[] } else { &["charge"][..] }, &[]);
+        builder.declare(&TEXTS, numbers);
         let others: Vec<(usize, Slot)> = schema.used_columns().collect();
         // The type is derived from several columns unless the user names one.
         let has_kind = others.iter().any(|(_, slot)| *slot == Slot::Kind);
@@ -164,10 +181,13 @@ impl FrameReader for Pdb {
                     }
                     builder.push(position(&line)?)?;
                     if !has_kind {
-                        builder.kind_of(&key(line.bytes), kind);
+                        let is_pdbqt = self.is_pdbqt;
+                        let kind = |key: &str| kind(key, is_pdbqt);
+                        builder.kind_of(&key(line.bytes, is_pdbqt), kind);
                     }
                     for &(column, slot) in &others {
-                        builder.put(slot, &line, field(line.bytes, column))?;
+                        let (_, start, end) = self.columns[column];
+                        builder.put(slot, &line, fixed(line.bytes, start, end))?;
                     }
                 }
                 Record::Cell => self.cell = cell(&line)?,
@@ -347,33 +367,30 @@ fn alternate(line: &[u8]) -> AlternateAtom<'_> {
     }
 }
 
-/// Returns the unparsed fields that define the type of an atom: name, residue and element, or its type in PDBQT, which is
-/// one column further, after a `Q`.
-fn key(line: &[u8]) -> [u8; 11] {
+/// Returns the unparsed fields that define the type of an atom: name, residue, and element or type of `AutoDock`.
+fn key(line: &[u8], is_pdbqt: bool) -> [u8; 11] {
     let mut key = [b' '; 11];
-    let is_pdbqt = is_pdbqt(line);
-    let symbol = if is_pdbqt { 77..79 } else { 76..78 };
+    let symbol = if is_pdbqt { 77..80 } else { 76..78 };
     for (to, from) in (12..16).chain(17..21).chain(symbol).enumerate() {
         key[to] = line.get(from).copied().unwrap_or(b' ');
-    }
-    if is_pdbqt {
-        key[10] = b'Q';
     }
     key
 }
 
-/// Returns whether a row is that of PDBQT of `AutoDock`, with a charge of three decimals in columns 71 to 76 and a type in
-/// columns 78 and 79 (<https://autodock.scripps.edu>).
-fn is_pdbqt(line: &[u8]) -> bool {
-    let charge = || number::parse(fixed(line, 70, 76)).is_some();
-    line.get(72) == Some(&b'.') && line.get(76) == Some(&b' ') && line.len() > 77 && charge()
+/// Returns whether a file that begins so has rows of PDBQT: the first atom has a charge of three decimals and a type in its columns.
+fn is_pdbqt(head: &[u8]) -> bool {
+    let mut lines = head.split(|&byte| byte == b'\n');
+    lines.find(|line| matches!(Record::of(line), Record::Atom)).is_some_and(|line| {
+        let charge = || number::parse(fixed(line, 70, 76)).is_some();
+        line.get(72) == Some(&b'.') && line.get(76) == Some(&b' ') && line.len() > 77 && charge()
+    })
 }
 
-fn kind(key: &str) -> Kind {
+fn kind(key: &str, is_pdbqt: bool) -> Kind {
     let part = |start: usize, end: usize| key.get(start..end).unwrap_or_default();
-    let (name, residue, symbol) = (part(0, 4), part(4, 8).trim(), part(8, 10).trim());
+    let (name, residue, symbol) = (part(0, 4), part(4, 8).trim(), part(8, 11).trim());
     let virtual_site = is_virtual_site(name.trim(), residue);
-    let by_symbol = if key.ends_with('Q') {
+    let by_symbol = if is_pdbqt {
         (of_autodock_type(symbol), ElementSource::Type)
     } else {
         (Element::from_symbol(symbol), ElementSource::Symbol)

@@ -33,8 +33,9 @@ const IONS: [(&str, &str); 8] = [
 
 /// Atom types of `AutoDock` that are no symbols of their elements (`AD4.1_bound.dat`): acceptors of hydrogen bonds, aromatic
 /// carbon, hydrogens of donors, carbons where rings are closed, and water.
-const AUTODOCK: [(&str, &str); 13] = [
+const AUTODOCK: [(&str, &str); 14] = [
     ("A", "C"),
+    ("CG", "C"),
     ("G", "C"),
     ("GA", "C"),
     ("J", "C"),
@@ -94,8 +95,10 @@ pub(in super::super) fn of_aligned_name(aligned: &str, residue: &str) -> Option<
     of_atom_name(name, residue)
 }
 
-/// Returns the element of an atom type of `AutoDock`, as PDBQT has them; `None` if it is none.
+/// Returns the element of an atom type of `AutoDock`, as PDBQT has them; `None` if it is none. Those of closed rings are
+/// numbered, as in `CG0`.
 pub(in super::super) fn of_autodock_type(name: &str) -> Option<Element> {
+    let name = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
     let own = AUTODOCK.iter().find(|(own, _)| own.eq_ignore_ascii_case(name));
     Element::from_symbol(own.map_or(name, |(_, symbol)| symbol))
 }
@@ -226,6 +229,7 @@ mod tests {
             ("NA", "N"),
             ("HD", "H"),
             ("CL", "Cl"),
+            ("CG0", "C"),
             ("Fe", "Fe"),
             ("X", "-"),
         ] {

@@ -1,7 +1,7 @@
 //! Tests of elements by the evidence that files have: names, types and masses.
 
 use crate::common::file;
-use spherule_particles::{Element, ParticleFrame, ReadOptions, read_frame};
+use spherule_particles::{Columns, Element, ParticleFrame, ReadOptions, read_frame};
 
 fn frame(content: &str) -> ParticleFrame {
     read_frame(&file(content).path, &ReadOptions::default()).expect("a frame")
@@ -62,10 +62,15 @@ fn types_of_autodock_are_in_their_columns() {
         atom(" N1 ", "-0.200", "NA"),
         atom(" H1 ", " 0.200", "HD"),
     ];
-    assert_eq!(
-        symbols(&frame(&format!("REMARK  made up\nROOT\n{}ENDROOT\n", text.concat()))),
-        "C O Cl Br Fe N H"
-    );
+    let text = format!("REMARK  made up\nROOT\n{}ENDROOT\n", text.concat());
+    assert_eq!(symbols(&frame(&text)), "C O Cl Br Fe N H");
+    let columns = Columns { kept: vec!["charge".into(), "atom_type".into()], ..Columns::default() };
+    let options = ReadOptions { columns, ..ReadOptions::default() };
+    let own = read_frame(&file(&text).path, &options).expect("a frame");
+    assert_eq!(own.numbers[0].values, [0.1, -0.3, -0.1, 0.1, 1.0, -0.2, 0.2]);
+    assert_eq!(own.texts[0].names, ["A", "OA", "Cl", "Br", "Fe", "NA", "HD"]);
+    // No segment, of which there is none where the charge is.
+    assert!(own.columns.iter().all(|name| name != "segment" && name != "element"));
     // In PDB, a segment and an element are there.
     let pdb = "ATOM      1  C1  LIG A   1       0.000   0.000   0.000  1.00  0.00      A1.0 O\n";
     assert_eq!(symbols(&frame(pdb)), "O");
