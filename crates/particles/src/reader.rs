@@ -105,7 +105,6 @@ impl Frames {
         }
         let fault = |message: String| FileError::whole_file(&self.path, message);
         self.shapes.apply(&mut frame).map_err(fault)?;
-        frame.add_undrawn_columns();
         frame.find_bonds(&self.bonds).map_err(fault)?;
         for column in &self.derived {
             column.add(&mut frame).map_err(fault)?;

@@ -74,7 +74,8 @@ impl ShapeColumns {
         Self { asked, rest: rest.unwrap_or(0), keeps_radii }
     }
 
-    /// Makes shapes of the columns of a frame, and removes those columns that were not asked for.
+    /// Makes shapes of the columns of a frame, and removes those columns that were not asked for. Warns of columns of shapes or
+    /// orientations that it does not know.
     ///
     /// # Errors
     ///
@@ -98,6 +99,8 @@ impl ShapeColumns {
                 |row| DVec3::from(at.map(|column| frame.numbers[column].values[row])) * factor;
             let axes = (0..frame.len()).map(axes).collect();
             frame.set_shapes(axes, orientation, self.keeps_radii);
+        } else {
+            frame.add_undrawn_columns();
         }
         let columns = frame.numbers.len() + frame.texts.len();
         let fits = columns * frame.len() <= self.rest;
@@ -175,33 +178,40 @@ impl ParticleFrame {
         }
         if spheres + bad == semi_axes.len() as u64 {
             if bad > 0 {
-                self.warnings
-                    .push(format!("{bad} shapes are not three lengths above 0, and not used"));
+                let are = if bad == 1 { "shape is" } else { "shapes are" };
+                self.warnings.push(format!("{bad} {are} not three lengths above 0, and not used"));
             }
             return;
         }
         self.set_radii(&longest, keeps_radii, spheres + bad);
         if bad > 0 {
-            let warning =
-                format!("{bad} shapes are not three lengths above 0: these particles are spheres");
-            self.warnings.push(warning);
+            let (are, particles) = if bad == 1 {
+                ("shape is", "this particle is a sphere")
+            } else {
+                ("shapes are", "these particles are spheres")
+            };
+            self.warnings.push(format!("{bad} {are} not three lengths above 0: {particles}"));
         }
+        let is_sphere = |axes: &DVec3| *axes == DVec3::ONE;
         let mut unknown = 0_u64;
-        for quaternion in &mut orientation {
+        for (quaternion, axes) in orientation.iter_mut().zip(&semi_axes) {
             let length = quaternion.length();
             if length.is_finite() && length > 0.0 {
                 *quaternion /= length;
             } else {
-                unknown += 1;
+                unknown += u64::from(!is_sphere(axes));
                 *quaternion = DQuat::IDENTITY;
             }
         }
         if unknown > 0 {
-            let warning = format!("{unknown} orientations are no quaternions, and turn nothing");
-            self.warnings.push(warning);
+            let (are, turn) = if unknown == 1 {
+                ("orientation is no quaternion", "turns")
+            } else {
+                ("orientations are no quaternions", "turn")
+            };
+            self.warnings.push(format!("{unknown} {are}, and {turn} nothing"));
         }
         let turned = |quaternion: &DQuat| *quaternion != DQuat::IDENTITY;
-        let is_sphere = |axes: &DVec3| *axes == DVec3::ONE;
         if !semi_axes.iter().all(is_sphere) {
             let orientation = if orientation.iter().any(turned) { orientation } else { Vec::new() };
             self.shapes = Shapes { semi_axes, orientation };
@@ -221,11 +231,14 @@ impl ParticleFrame {
             let median = *known.select_nth_unstable_by(half, f64::total_cmp).1;
             self.radius = vec![median; longest.len()];
             if spheres > 0 {
-                let warning = format!(
-                    "{spheres} particles have no shape and no radius: they are spheres with a radius of \
-                     {median}, the median of the longest semi-axes"
-                );
-                self.warnings.push(warning);
+                let are = if spheres == 1 {
+                    "particle has no shape and no radius: it is a sphere"
+                } else {
+                    "particles have no shape and no radius: they are spheres"
+                };
+                self.warnings.push(format!(
+                    "{spheres} {are} with a radius of {median}, the median of the longest semi-axes"
+                ));
             }
         }
         for (radius, longest) in self.radius.iter_mut().zip(longest) {
@@ -330,7 +343,7 @@ mod tests {
             vec![DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0), DQuat::from_xyzw(2.0, 0.0, 0.0, 0.0)];
         own.set_shapes(axes, quaternions, false);
         assert_eq!(own.shapes.orientation, [DQuat::IDENTITY, DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0)]);
-        assert!(own.warnings[0].starts_with("1 orientations"), "{:?}", own.warnings);
+        assert!(own.warnings[0].starts_with("1 orientation is"), "{:?}", own.warnings);
         own.retain(&[false, true]);
         own.repeat(2);
         assert_eq!(own.shapes.semi_axes, [DVec3::new(0.5, 1.0, 1.0); 2]);

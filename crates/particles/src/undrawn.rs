@@ -63,9 +63,6 @@ impl ParticleFrame {
 
     /// Adds a warning about columns of shapes and orientations that are not drawn.
     pub(crate) fn add_undrawn_columns(&mut self) {
-        if !self.shapes.is_empty() {
-            return;
-        }
         let count = self.len() as u64;
         for (kind, names) in
             [(Undrawn::Shapes, &SHAPES[..]), (Undrawn::Orientations, &ORIENTATIONS[..])]

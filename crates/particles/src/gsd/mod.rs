@@ -25,7 +25,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Chunks of particles that are not columns of numbers, or are in [`COLUMNS`] under other names.
-const KNOWN: [&str; 7] = ["N", "types", "typeid", "position", "velocity", "diameter", "mass"];
+const KNOWN: [&str; 8] =
+    ["N", "types", "typeid", "type_shapes", "position", "velocity", "diameter", "mass"];
 
 /// Chunk of the diameters, which HOOMD-blue leaves out if all are 1.
 const DIAMETER: &str = "particles/diameter";

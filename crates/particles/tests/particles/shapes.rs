@@ -60,6 +60,23 @@ fn data_files_have_a_section_of_ellipsoids() {
 }
 
 #[test]
+fn spheres_among_ellipsoids_need_neither_shape_nor_orientation() {
+    let sections = [
+        // All of them are round, or points.
+        "Ellipsoids\n\n3 2 2 2 1 0 0 1\n5 2 2 2 1 0 0 0\n",
+        "Ellipsoids\n\n3 0 0 0 1 0 0 1\n5 0 0 0 0 0 0 0\n",
+    ];
+    for section in sections {
+        let own = frame(&format!("{DATA}{section}"));
+        assert!(own.shapes.is_empty() && own.warnings.is_empty(), "{:?}", own.warnings);
+    }
+    let one = frame(&format!("{DATA}Ellipsoids\n\n3 2 4 8 1 0 0 1\n"));
+    assert!(one.shapes.is_sphere(0) && !one.shapes.is_sphere(1));
+    assert_eq!(one.warnings.len(), 1, "{:?}", one.warnings);
+    assert!(one.warnings[0].starts_with("1 particle has no shape"), "{:?}", one.warnings);
+}
+
+#[test]
 fn extended_xyz_has_semi_axes_and_the_real_part_last() {
     let text = "2\nProperties=species:S:1:pos:R:3:aspherical_shape:R:3:orientation:R:4\n\
                 X 1 1 1 1 2 4 0 0 0 1\nX 7 1 1 1 2 4 0 0 1 1\n";

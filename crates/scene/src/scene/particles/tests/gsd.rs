@@ -149,13 +149,15 @@ fn columns_are_chunks_with_a_row_for_each_particle() {
         (0, "log/particles/stress", 9, 2, floats(&[1.0, 2.0, 3.0, 4.0])),
         (0, "log/energy", 9, 1, floats(&[7.0, 8.0])),
         (0, "particles/short", 9, 1, floats(&[7.0])),
+        // Texts of as many types as there are particles.
+        (0, "particles/type_shapes", 5, 2, b"{\0}\0".to_vec()),
     ];
     let frame = frame_with(gsd(&more), &columns("mine")).expect("a frame");
     assert_eq!(frame.numbers[0].values, [5.0, 6.0]);
     for name in ["mine", "log/particles/stress"] {
         assert!(frame.columns.iter().any(|own| own.starts_with(name)), "{:?}", frame.columns);
     }
-    for name in ["energy", "short"] {
+    for name in ["energy", "short", "type_shapes"] {
         assert!(!frame.columns.iter().any(|own| own.contains(name)), "{:?}", frame.columns);
     }
 }
