@@ -115,6 +115,7 @@ class Particles:
     warnings: list[str]
     _kinds: tuple[list[str], npt.NDArray[np.uint32]] | None
     _elements: list[str | None]
+    _element_from: list[str]
     _virtual_sites: list[bool]
     #: The choices that all frames of the file have in common, and the positions for which they hold.
     _first_frame: tuple[dict[str, Any], npt.NDArray[Any]] | None
@@ -155,6 +156,8 @@ class Particles:
             raise Error("`elements` must have an entry for each distinct kind, in the order of first occurrence")
         names = self._kinds[0] if self._kinds else []
         self._elements = list(elements) if elements is not None else [_native.element_of(name) for name in names]
+        source = "symbol" if elements is None else "given"
+        self._element_from = [source if element else "" for element in self._elements]
         self._virtual_sites = []
         self._first_frame = None
         self.bonds, self.bond_shifts = None, None
@@ -217,6 +220,13 @@ class Particles:
         if self._kinds is None:
             return None
         return _texts(([element or "" for element in self._elements], self._kinds[1]))
+
+    @property
+    def element_from(self) -> npt.NDArray[np.str_] | None:
+        """The fact from which the element of each particle is known, (n,), or None without types: ``"symbol"``,
+        ``"atomic number"``, ``"name"`` (of the atom and its residue), ``"type"``, ``"mass"``, or ``"given"`` as
+        ``elements``; empty where it is unknown."""
+        return _texts(None if self._kinds is None else (self._element_from, self._kinds[1]))
 
     @property
     def materials(self) -> npt.NDArray[np.str_] | None:
@@ -283,13 +293,23 @@ def _options(
     columns: str | None,
     atom_style: str | None,
     topology: str | os.PathLike[str] | None,
+    elements: Mapping[str, str] | None = None,
     bonds: str | None = None,
 ) -> dict[str, Any]:
     path = None if topology is None else _values.path("topology", topology)
     for name, value in (("format", format), ("columns", columns), ("atom_style", atom_style), ("bonds", bonds)):
         if value is not None:
             _values.text(name, value)
-    return {"format": format, "columns": columns, "atom_style": atom_style, "topology": path, "bonds": bonds}
+    given = _values.table("elements", {} if elements is None else elements)
+    symbols = [(name, _values.text(f'elements["{name}"]', symbol)) for name, symbol in given.items()]
+    return {
+        "format": format,
+        "columns": columns,
+        "atom_style": atom_style,
+        "topology": path,
+        "elements": symbols,
+        "bonds": bonds,
+    }
 
 
 @from_call
@@ -301,6 +321,7 @@ def read(
     columns: str | None = None,
     atom_style: str | None = None,
     topology: str | os.PathLike[str] | None = None,
+    elements: Mapping[str, str] | None = None,
     bonds: str | None = None,
 ) -> Particles:
     """Reads a frame of a particle file into NumPy columns.
@@ -316,6 +337,8 @@ def read(
         columns: Roles of columns, as in ``"x=px,type=species"``.
         atom_style: The atom style of a LAMMPS data file, as ``"full"``.
         topology: The file that names the particles of a trajectory.
+        elements: Symbols of the elements of types, by their names, where the file does not tell or tells others, as in
+            ``{"1": "Si", "2": "O"}``.
         bonds: Whether bonds are read: ``"file"`` for those of the file, ``"auto"`` for those or else by covalent radii,
             or rules such as ``"C-C<1.7"``; by default none are.
 
@@ -336,7 +359,7 @@ def read(
     from . import _native
 
     frame = _values.integer("frame", frame, -(2**63), 2**63 - 1)
-    options = _options(format, columns, atom_style, topology, bonds)
+    options = _options(format, columns, atom_style, topology, elements, bonds)
     name = _values.path("path", path)
     table = _native.read(name, frame, options)
     particles = Particles.__new__(Particles)
@@ -344,6 +367,7 @@ def read(
     particles.radius, particles.color = table["radius"], table["color"]
     particles.semi_axes, particles.orientation = table["semi_axes"], table["orientation"]
     particles._kinds, particles._elements = table["kinds"], table["elements"]
+    particles._element_from = table["element_from"]
     particles._materials, particles._virtual_sites = table["materials"], table["virtual_sites"]
     particles._first_frame = (table["first_frame"], particles.positions) if table["first_frame"] else None
     particles.bonds, particles.bond_shifts = table["bonds"] or (None, None)
@@ -398,12 +422,13 @@ def frames(
     columns: str | None = None,
     atom_style: str | None = None,
     topology: str | os.PathLike[str] | None = None,
+    elements: Mapping[str, str] | None = None,
     bonds: str | None = None,
 ) -> Iterator[Particles]:
     """The frames of a particle file, one after the other.
 
     Args:
-        path, format, columns, atom_style, topology, bonds: As for :func:`read`.
+        path, format, columns, atom_style, topology, elements, bonds: As for :func:`read`.
 
     Raises:
         Error: As for :func:`read`.
@@ -418,5 +443,12 @@ def frames(
     count = count_frames(path, format=format, columns=columns, atom_style=atom_style, topology=topology)
     for number in range(count):
         yield read(
-            path, number, format=format, columns=columns, atom_style=atom_style, topology=topology, bonds=bonds
+            path,
+            number,
+            format=format,
+            columns=columns,
+            atom_style=atom_style,
+            topology=topology,
+            elements=elements,
+            bonds=bonds,
         )

@@ -23,6 +23,8 @@ pub(crate) struct ReadTable {
     columns: Option<String>,
     atom_style: Option<String>,
     topology: Option<PathBuf>,
+    /// Names of types with the symbols of their elements.
+    elements: Vec<(String, String)>,
     /// The source of bonds, as the style has it.
     bonds: Option<String>,
 }
@@ -40,11 +42,21 @@ impl ReadTable {
         let columns: Columns = columns.map_err(|why: String| error(py, &why))?;
         let bonds = self.bonds.as_deref().map(str::parse).transpose();
         let bonds: Option<BondSource> = bonds.map_err(|why: String| error(py, &why))?;
+        let element = |(name, symbol): &(String, String)| {
+            let found = Element::from_symbol(symbol).map(|element| (name.clone(), element));
+            found.ok_or_else(|| {
+                let message = format!(
+                    "elements[\"{name}\"] is \"{symbol}\", but must be a symbol such as \"O\""
+                );
+                error(py, &message)
+            })
+        };
         Ok(ReadOptions {
             format: format.transpose()?,
             columns: Columns { rest: Some(usize::MAX), ..columns },
             atom_style: self.atom_style.clone(),
             topology: self.topology.clone(),
+            elements: self.elements.iter().map(element).collect::<PyResult<_>>()?,
             bonds: bonds.unwrap_or_default(),
             allow_empty: true,
             ..ReadOptions::default()
@@ -142,6 +154,9 @@ fn columns(py: Python<'_>, frame: ParticleFrame) -> PyResult<Bound<'_, PyDict>> 
     let coded = (!kinds.codes.is_empty()).then(|| (names, codes(py, &kinds.codes)));
     table.set_item("kinds", coded)?;
     table.set_item("elements", elements)?;
+    let sources: Vec<&str> =
+        kinds.table.iter().map(|kind| kind.element.map_or("", |_| kind.source.name())).collect();
+    table.set_item("element_from", sources)?;
     let virtual_sites: Vec<bool> = kinds.table.iter().map(|kind| kind.virtual_site).collect();
     table.set_item("virtual_sites", virtual_sites)?;
     let bonds = frame.bonds.map(|bonds| -> PyResult<_> {

@@ -45,6 +45,22 @@ def test_files_become_columns(folder):
     assert spherule.read(folder / "a.npz").radius.tolist() == [0.25]
 
 
+def test_elements_are_known_from_a_fact_or_given(folder):
+    facts = {name: set(spherule.read(folder / name).element_from.tolist()) for name in ("a.xyz", "a.gro", "a.lammpstrj")}
+    assert facts == {"a.xyz": {"symbol"}, "a.gro": {"name"}, "a.lammpstrj": {""}}
+    given = spherule.read(folder / "a.lammpstrj", elements={"1": "Si", "7": "O"})
+    assert given.elements.tolist() == ["Si", ""] and given.element_from.tolist() == ["given", ""]
+    later = [frame.elements.tolist() for frame in spherule.frames(folder / "a.lammpstrj", elements={"2": "O"})]
+    assert later == [["", "O"], ["O"]]
+    own = spherule.Particles([[0, 0, 0], [1, 0, 0]], kinds=["O", "x"], elements=["O", None])
+    assert own.element_from.tolist() == ["given", ""]
+    assert spherule.Particles([[0, 0, 0]], kinds=["O"]).element_from.tolist() == ["symbol"]
+    assert spherule.Particles([[0, 0, 0]]).element_from is None
+    for elements, text in (({"1": "Xx"}, r'elements\["1"\] is "Xx"'), ({"1": 8}, r'elements\["1"\]'), ("O", "a dict")):
+        with pytest.raises(spherule.Error, match=text):
+            spherule.read(folder / "a.lammpstrj", elements=elements)
+
+
 def test_frames_are_numbered_from_either_end(folder):
     path = folder / "a.lammpstrj"
     assert spherule.count_frames(path) == 2
