@@ -92,8 +92,9 @@ class Scene:
         wrap, replicate, show_cell: Wrap particles into the cell; repeat it; draw its edges.
         complete: Whether particles on faces, edges and corners of the cell are drawn on the opposite ones, too; by default
             for small crystals of files.
-        outside: Bonds that leave the cell: ``"whole"``, with the particles at their other ends, ``"none"``, or
-            ``"halves"``; by default none in a completed cell, and else halves.
+        outside: Bonds that leave the cell: ``"molecules"``, which are whole if their centers are in the cell, ``"whole"``,
+            with the particles at their other ends, ``"none"``, or ``"halves"``; by default molecules in a completed cell,
+            and else halves.
         slices: Planes that cut spheres away, as in ``["z > 50%"]``; ``slice_mode`` is ``"remove"``, ``"caps"`` or
             ``"hide"``.
         label: A text or several, as in ``"top:{title}"``, or sections; ``"resname LIG: {name}"`` is at each of these

@@ -24,7 +24,7 @@ Side = Literal["auto", "iso", "x", "y", "z", "-x", "-y", "-z"]
 UpAxis = Literal["x", "y", "z", "-x", "-y", "-z"]
 ArrowCenter = Literal["tail", "middle", "head"]
 SliceMode = Literal["remove", "caps", "hide"]
-Outside = Literal["whole", "none", "halves"]
+Outside = Literal["molecules", "whole", "none", "halves"]
 
 
 class Render(TypedDict, total=False):

@@ -13,7 +13,7 @@ GROUPS = [
     [({"replicate": (2, 1, 1)}, ["--replicate", "2,1,1"])],
     [({"show_cell": True}, ["--cell"])],
     [({"complete": True}, ["--complete", "yes"]), ({"complete": False}, ["--complete", "no"])],
-    [({"outside": outside}, ["--outside", outside]) for outside in ("whole", "none", "halves")],
+    [({"outside": outside}, ["--outside", outside]) for outside in ("molecules", "whole", "none", "halves")],
     [
         ({"polyhedra": "Cu-*<3"}, ["--polyhedra", "Cu-*<3"]),
         ({"polyhedra": ["Ni-Cu", "Cu-Cu<3"], "polyhedra_opacity": 1.0}, ["--polyhedra", "Ni-Cu,Cu-Cu<3", "--polyhedra-opacity", "1"]),

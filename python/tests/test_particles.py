@@ -423,7 +423,7 @@ def test_crystals_are_balls_and_sticks_in_their_cell(tmp_path):
         ({"polyhedra": "Cu-Xx<2"}, "no type `Xx`"),
         ({"polyhedra": "Cu-Cu<3", "polyhedra_opacity": 2}, "0 to 1"),
         ({"polyhedra_opacity": 0.5}, "needs `polyhedra`"),
-        ({"outside": "some"}, "whole, none, halves"),
+        ({"outside": "some"}, "molecules, whole, none, halves"),
         ({"complete": True}, "no cell"),
     ],
 )

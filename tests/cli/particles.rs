@@ -236,13 +236,22 @@ fn cells_of_crystals_are_completed_and_have_polyhedra() {
          .3051 .3051 0\n.6949 .6949 0\n.1949 .8051 .5\n.8051 .1949 .5\n",
     );
     folder.write("bare.xyz", "1\n\nO 0 0 0\n");
-    let bodies = |more: &[&str]| {
-        let args = ["rutile.poscar", "--json", "-o", "a.png"];
+    let of = |file: &str, more: &[&str]| {
+        let args = [file, "--json", "-o", "a.png"];
         let statistics = &folder.json(&[&SMALL[..], &args, more].concat())["statistics"];
         ["spheres", "sticks", "triangles"].map(|kind| statistics[kind].as_u64())
     };
+    let bodies = |more: &[&str]| of("rutile.poscar", more);
     // Nine titanium atoms, and two oxygen atoms on each of two faces and in the middle.
     assert_eq!(bodies(&[]), [15, 14, 0].map(Some));
+    // Molecules are whole at the eight corners, instead of cut at the edges.
+    folder.write(
+        "dry.poscar",
+        "CO2\n1\n5 0 0\n0 5 0\n0 0 5\nC O\n1 2\nDirect\n0 0 0\n.232 0 0\n.768 0 0\n",
+    );
+    assert_eq!(of("dry.poscar", &[])[0], Some(8 * 3));
+    assert_eq!(of("dry.poscar", &["--outside", "none"])[0], Some(8 + 2 * 4));
+    assert_eq!(of("dry.poscar", &["--complete", "no", "--outside", "molecules"])[0], Some(3));
     assert_eq!(bodies(&["--complete", "no"])[0], Some(6));
     assert_eq!(bodies(&["--complete", "no", "--outside", "none", "--cell"])[0], Some(6));
     assert!(bodies(&["--outside", "whole"])[0] > Some(15));

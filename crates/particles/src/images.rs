@@ -6,7 +6,7 @@ use crate::neighbors::Points;
 use std::collections::HashMap;
 
 /// The part of an edge of the cell up to which a particle is on the face at its end.
-const ON_FACE: f64 = 1e-3;
+pub const ON_FACE: f64 = 1e-3;
 
 /// Images of particles: row `i` of every column belongs to image `i`.
 #[derive(Clone, Debug, Default)]
@@ -32,13 +32,18 @@ pub struct LeavingBond {
 
 impl Images {
     /// Returns the images that complete the cell: those of particles on its faces, edges and corners at the opposite
-    /// ones, along the edges that are periodic.
-    pub fn on_faces(points: Points) -> Self {
+    /// ones, along the edges that are periodic. `molecules` are rows of particles that go together, by the place of their center.
+    pub fn on_faces(points: Points, molecules: &[Vec<u32>]) -> Self {
         let mut images = Self::default();
         let Some(cell) = points.cell else { return images };
         let inverse = cell.matrix().inverse();
-        for row in 0..points.len() {
-            let place = inverse * (points.position(row) - cell.origin);
+        let mut is_alone = vec![true; points.len()];
+        molecules.iter().flatten().for_each(|&row| is_alone[row as usize] = false);
+        let alone = (0..points.len() as u32).filter(|&row| is_alone[row as usize]);
+        let alone: Vec<[u32; 1]> = alone.map(|row| [row]).collect();
+        let groups = alone.iter().map(|row| &row[..]).chain(molecules.iter().map(Vec::as_slice));
+        for rows in groups {
+            let place = inverse * (points.center(rows) - cell.origin);
             let steps = |edge: usize| -> &[i32] {
                 match place[edge] {
                     _ if !cell.periodic[edge] => &[0],
@@ -50,7 +55,9 @@ impl Images {
             for &a in steps(0) {
                 for &b in steps(1) {
                     for &c in steps(2) {
-                        images.add(row as u32, [a, b, c]);
+                        for &row in rows {
+                            images.add(row, [a, b, c]);
+                        }
                     }
                 }
             }
@@ -175,16 +182,28 @@ mod tests {
         ];
         let counts = |periodic| {
             let frame = frame(&places, periodic);
-            let images = Images::on_faces(Points::of(&frame));
+            let images = Images::on_faces(Points::of(&frame), &[]);
             [0, 1, 2, 3, 4, 5].map(|row| images.rows.iter().filter(|own| **own == row).count())
         };
         assert_eq!(counts([true; 3]), [7, 3, 1, 0, 0, 0]);
         assert_eq!(counts([true, true, false]), [3, 3, 1, 0, 0, 0]);
         assert_eq!(counts([false; 3]), [0; 6]);
         let frame = frame(&places, [true; 3]);
-        let images = Images::on_faces(Points::of(&frame));
+        let images = Images::on_faces(Points::of(&frame), &[]);
         assert_eq!(images.row_of(6, 2, [-1, 0, 0]), Some(6 + images.len() as u32 - 1));
         assert_eq!((images.row_of(6, 3, [0; 3]), images.row_of(6, 3, [1, 0, 0])), (Some(3), None));
+    }
+
+    #[test]
+    fn molecules_are_completed_by_their_centers() {
+        // A pair around a corner, one of whose particles is on a face, and a pair whose center is inside.
+        let places = [[-0.1, 0.0, 0.1], [0.1, 0.0, -0.1], [0.0, 0.5, 0.5], [0.2, 0.5, 0.5]];
+        let frame = frame(&places, [true; 3]);
+        let images = Images::on_faces(Points::of(&frame), &[vec![0, 1], vec![2, 3]]);
+        let count = |row: u32| images.rows.iter().filter(|own| **own == row).count();
+        assert_eq!([0, 1, 2, 3].map(count), [7, 7, 0, 0]);
+        let alone = Images::on_faces(Points::of(&frame), &[]);
+        assert_eq!((alone.len(), alone.rows.contains(&2)), (3, true));
     }
 
     #[test]
@@ -199,7 +218,7 @@ mod tests {
         let ends = [(0, 1, [-1, 0, 0]), (1, 0, [1, 0, 0])];
         assert_eq!(leaving, ends.map(|(row, other, shift)| LeavingBond { row, other, shift }));
         // Four rows of three particles.
-        let images = Images::on_faces(Points::of(&frame));
+        let images = Images::on_faces(Points::of(&frame), &[]);
         let mut completed = bonds.clone();
         let leaving = completed.between(2, &images);
         assert_eq!((images.len(), completed.len(), leaving.len()), (10, 8, 8));

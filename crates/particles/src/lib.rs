@@ -110,7 +110,7 @@ mod xyz;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-pub use bonds::{BondRules, BondSource, Bonds};
+pub use bonds::{BondRules, BondSource, Bonds, Molecule};
 pub use categories::{Codes, ElementSource, Kind, Kinds, TextColumn};
 pub use cell::Cell;
 pub use element::Element;

@@ -41,6 +41,12 @@ impl<'p> Points<'p> {
         DVec3::new(x[row], y[row], z[row])
     }
 
+    /// Returns the mean position of rows.
+    pub fn center(&self, rows: &[u32]) -> DVec3 {
+        let sum: DVec3 = rows.iter().map(|&row| self.position(row as usize)).sum();
+        sum / rows.len() as f64
+    }
+
     /// Returns the number of points.
     pub fn len(&self) -> usize {
         self.axes[0].len()

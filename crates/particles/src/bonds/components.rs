@@ -23,6 +23,15 @@ pub(crate) struct Near {
     pub(crate) is_first: bool,
 }
 
+/// Particles that bonds connect in one piece, in columns.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Molecule {
+    /// Rows of the particles.
+    pub rows: Vec<u32>,
+    /// By how many edges a, b and c of the cell to move each one, so that no bond crosses the cell; the first one stays.
+    pub moves: Vec<[i32; 3]>,
+}
+
 impl Adjacency {
     pub(crate) fn new(bonds: &Bonds, particles: usize) -> Self {
         let mut starts = vec![0_u32; particles + 2];
@@ -87,6 +96,30 @@ impl Bonds {
             numbers[row as usize] = number;
         }
         (0..particles as u32).map(|row| numbers[root(&mut parents, row) as usize]).collect()
+    }
+
+    /// Returns the molecules of `particles` particles, of two or more each, between which there are no bonds; networks without an
+    /// end are none.
+    pub fn molecules(&self, particles: usize) -> Vec<Molecule> {
+        let moves = self.unwrapped(particles);
+        let clusters = self.clusters(particles);
+        let mut molecules = vec![Some(Molecule::default()); particles];
+        for (row, &cluster) in clusters.iter().enumerate() {
+            if let Some(molecule) = &mut molecules[cluster as usize - 1] {
+                molecule.rows.push(row as u32);
+                molecule.moves.push(moves[row]);
+            }
+        }
+        for bond in 0..self.len() {
+            let (first, second, shift) = self.bond(bond);
+            let [own, other] = [first, second].map(|row| moves[row as usize]);
+            let is_crossed = |edge: usize| i32::from(shift[edge]) + own[edge] != other[edge];
+            if [0, 1, 2].into_iter().any(is_crossed) {
+                molecules[clusters[first as usize] as usize - 1] = None;
+            }
+        }
+        let several = |molecule: &Molecule| molecule.rows.len() > 1;
+        molecules.into_iter().flatten().filter(several).collect()
     }
 
     /// Returns by how many edges of the cell to move each particle so that bonds don't cross the cell: the
@@ -167,6 +200,25 @@ mod tests {
         assert_eq!(bonds.clusters(8), [2, 1, 2, 1, 1, 3, 3, 4]);
         assert_eq!(Bonds::default().clusters(3), [1, 2, 3]);
         assert!(Bonds::default().clusters(0).is_empty());
+    }
+
+    #[test]
+    fn molecules_end_and_networks_do_not() {
+        // A chain over two faces, a chain without an end, a particle alone, and a pair.
+        let bonds = [
+            (0, 2, [1, 0, 0]),
+            (2, 3, [0, -1, 0]),
+            (1, 4, [0; 3]),
+            (1, 4, [0, 0, 1]),
+            (6, 7, [0; 3]),
+        ];
+        let bonds = Bonds::sorted(bonds.map(ordered).into());
+        let molecules = bonds.molecules(8);
+        assert_eq!(molecules.len(), 2);
+        assert_eq!(molecules[0].rows, [0, 2, 3]);
+        assert_eq!(molecules[0].moves, [[0; 3], [1, 0, 0], [1, -1, 0]]);
+        assert_eq!((&molecules[1].rows[..], molecules[1].moves[1]), (&[6, 7][..], [0; 3]));
+        assert!(Bonds::default().molecules(3).is_empty());
     }
 
     proptest! {

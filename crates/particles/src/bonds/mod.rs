@@ -10,6 +10,7 @@ mod rules;
 pub use crate::frame::Bonds;
 pub(crate) use crate::frame::{Bond, ordered};
 pub(crate) use components::Adjacency;
+pub use components::Molecule;
 pub use distance::from_distance;
 pub use images::nearest_image;
 pub(crate) use listed::{End, Listed, Numbering, row_from_one};

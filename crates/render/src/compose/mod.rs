@@ -383,7 +383,7 @@ fn of_scene(request: &Request, mut scene: Scene) -> Staged {
     }
 }
 
-/// Wraps and replicates particles.
+/// Wraps and replicates particles, and makes molecules whole.
 ///
 /// # Errors
 /// They have no cell, or are too many.
@@ -399,6 +399,7 @@ pub fn repeat(
     if let Some(copies) = request.copies {
         particles.replicate(copies).map_err(refused)?;
     }
+    particles.gather_molecules(request.boundary);
     if request.show && particles.frame.cell.is_none() {
         return Err(FileError::whole_file(path, "has no simulation cell to draw"));
     }

@@ -79,11 +79,11 @@ pub(in crate::cli) struct ViewArgs {
     /// single frame with at most 100, in a cell that is periodic in all directions]
     #[arg(long, value_name = "auto|yes|no", value_enum)]
     complete: Option<Completion>,
-    /// Bonds that leave the cell: whole, with the particles at their other ends; none; or their halves inside [default:
-    /// none in a completed cell, or else halves]
+    /// Bonds that leave the cell: molecules, which are whole if their centers are in the cell; whole, with the particles at their
+    /// other ends; none; or their halves inside [default: molecules in a completed cell, or else halves]
     #[arg(
         long,
-        value_name = "whole|none|halves",
+        value_name = "molecules|whole|none|halves",
         value_parser = |name: &str| values::named(&Outside::ALL, name, "treatments of bonds are")
     )]
     outside: Option<Outside>,

@@ -6,13 +6,15 @@ use super::{Particles, PeriodicError};
 use crate::memory;
 use crate::scene::Spheres;
 use glam::{DMat3, DVec3};
-use spherule_particles::Format;
-use spherule_particles::images::{Images, LeavingBond};
+use spherule_particles::images::{Images, LeavingBond, ON_FACE};
 use spherule_particles::neighbors::Points;
+use spherule_particles::{Format, Molecule};
 
 /// The treatment of bonds that leave the cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outside {
+    /// Molecules are whole, those whose centers are in the cell; bonds of networks without an end are not drawn.
+    Molecules,
     /// The particles at their other ends are drawn, too.
     Whole,
     /// They are not drawn.
@@ -23,8 +25,12 @@ pub enum Outside {
 
 impl Outside {
     /// All treatments, with their names in options.
-    pub const ALL: [(&'static str, Self); 3] =
-        [("whole", Self::Whole), ("none", Self::None), ("halves", Self::Halves)];
+    pub const ALL: [(&'static str, Self); 4] = [
+        ("molecules", Self::Molecules),
+        ("whole", Self::Whole),
+        ("none", Self::None),
+        ("halves", Self::Halves),
+    ];
 
     /// Returns the name in options.
     pub fn name(self) -> &'static str {
@@ -38,7 +44,7 @@ pub struct Boundary {
     /// True if particles on faces, edges and corners of the cell are drawn on the opposite ones, too; `None` for
     /// [crystals](Particles::completes_cell).
     pub complete: Option<bool>,
-    /// The treatment of bonds that leave the cell; `None` for none in a completed cell, and else for halves.
+    /// The treatment of bonds that leave the cell; `None` for molecules in a completed cell, and else for halves.
     pub outside: Option<Outside>,
 }
 
@@ -67,9 +73,58 @@ impl Particles {
         self.has_crystal_cell && (self.first_frame.is_none() || self.frame.format == Format::Cif)
     }
 
+    fn completes(&self, boundary: Boundary) -> bool {
+        boundary.complete.unwrap_or_else(|| self.completes_cell())
+    }
+
+    fn outside(&self, boundary: Boundary) -> Outside {
+        let usual = if self.completes(boundary) { Outside::Molecules } else { Outside::Halves };
+        boundary.outside.unwrap_or(usual)
+    }
+
+    /// Makes the molecules of the cell whole, if they are drawn so ([`Outside::Molecules`]): moves their particles by whole edges, so
+    /// that no bond crosses the cell and the center of each molecule is in it. Does nothing without bonds.
+    pub fn gather_molecules(&mut self, boundary: Boundary) {
+        let (Outside::Molecules, Some(bonds), Some(cell)) =
+            (self.outside(boundary), &self.frame.bonds, self.frame.cell)
+        else {
+            return;
+        };
+        let (matrix, periodic) = (cell.matrix(), DVec3::from(cell.periodic.map(f64::from)));
+        let mut moves = vec![[0; 3]; self.spheres.len()];
+        for Molecule { rows, moves: own } in bonds.molecules(self.spheres.len()) {
+            let mean: DVec3 = own.iter().map(|edges| DVec3::from(edges.map(f64::from))).sum();
+            let center = cell.fractional(self.points().center(&rows)) + mean / rows.len() as f64;
+            // Those on a face are at its beginning.
+            let outside = (center + ON_FACE).floor() * periodic;
+            for (row, edges) in rows.iter().zip(own) {
+                let edge = |axis: usize| edges[axis] - outside[axis] as i32;
+                moves[*row as usize] = [edge(0), edge(1), edge(2)];
+            }
+        }
+        for (row, edges) in moves.iter().enumerate() {
+            let by = matrix * DVec3::from(edges.map(f64::from));
+            self.spheres.x[row] += by.x;
+            self.spheres.y[row] += by.y;
+            self.spheres.z[row] += by.z;
+        }
+        if let Some(bonds) = &mut self.frame.bonds {
+            bonds.move_particles(|row| moves[row].map(|edge| -edge));
+        }
+    }
+
+    /// Returns the rows of each molecule that is whole.
+    fn whole_molecules(&self) -> Vec<Vec<u32>> {
+        let molecules = self.frame.bonds.as_ref().map(|bonds| bonds.molecules(self.spheres.len()));
+        let is_whole = |molecule: &Molecule| molecule.moves.iter().all(|edges| *edges == [0; 3]);
+        let whole = molecules.into_iter().flatten().filter(is_whole);
+        whole.map(|molecule| molecule.rows).collect()
+    }
+
     /// Draws the boundary of the cell: appends the images that are asked for, with all columns of their particles, and changes the
     /// bonds to those between what is drawn. Polyhedra become those of all centers in the cell; their corners are drawn, too, unless
-    /// nothing outside is to be drawn: then those with other corners are left out.
+    /// nothing outside is to be drawn: then those with other corners are left out. Molecules are whole that
+    /// [`gather_molecules`](Self::gather_molecules) has made so.
     ///
     /// # Errors
     /// There is no cell to complete, or there would be too many spheres; then nothing has changed.
@@ -85,12 +140,14 @@ impl Particles {
                 return Err(PeriodicError::NotPeriodic("complete"));
             }
         }
-        let completes = complete.unwrap_or_else(|| self.completes_cell());
-        let usual = if completes { Outside::None } else { Outside::Halves };
-        let leaving = outside.unwrap_or(usual);
+        let leaving = self.outside(boundary);
         let count = self.spheres.len();
-        let mut images =
-            if completes { Images::on_faces(self.points()) } else { Images::default() };
+        let mut images = Images::default();
+        if self.completes(boundary) {
+            let is_of_molecules = leaving == Outside::Molecules;
+            let molecules = if is_of_molecules { self.whole_molecules() } else { Vec::new() };
+            images = Images::on_faces(self.points(), &molecules);
+        }
         let in_cell = count + images.len();
         let centers: Vec<(&Coordination, [i32; 3], u32)> = images
             .nodes(count)
@@ -219,13 +276,15 @@ mod tests {
 
     #[test]
     fn bonds_that_leave_end_at_particles_or_halfway_or_are_not_drawn() {
-        use Outside::{Halves, None, Whole};
+        use Outside::{Halves, Molecules, None, Whole};
         for (complete, outside, expected) in [
             (false, Option::None, (3, 4)),
             (false, Some(Halves), (3, 4)),
             (false, Some(None), (3, 2)),
             (false, Some(Whole), (5, 4)),
             (true, Some(None), (11, 5)),
+            // A network without an end has no molecules.
+            (true, Some(Molecules), (11, 5)),
             (true, Some(Halves), (11, 5 + 13)),
         ] {
             let (_, spheres, sticks) = drawn(Some(complete), outside);
@@ -236,6 +295,37 @@ mod tests {
         let (halves, ..) = drawn(Some(true), Some(Halves));
         let length = |stub: &Stub| stub.half.length_squared();
         assert!(halves.added.stubs.iter().all(|stub| [1.0, 2.0].contains(&length(stub))));
+    }
+
+    #[test]
+    fn molecules_are_whole_with_their_centers_in_the_cell() {
+        // Three particles in a row over the corner of the cell, and a pair over a face whose center is inside.
+        let mut own = particles();
+        own.spheres = Spheres::default();
+        let places = [[3.0, 0.0, 0.0], [0.0; 3], [1.0, 4.0, 0.0], [2.0, 2.0, 3.8], [2.0, 2.0, 0.6]];
+        for at in places {
+            own.spheres.push(at.into(), 0.5, 0, Rgb::ONE);
+        }
+        own.frame.numbers[0].values = vec![0.0, 1.0, 2.0, 3.0, 4.0];
+        let (first, second) = (vec![0, 1, 3], vec![1, 2, 4]);
+        let shift = vec![[1, 0, 0], [0, -1, 0], [0, 0, 1]];
+        own.frame.bonds = Some(Bonds { first, second, shift, ..Bonds::default() });
+        let complete = Boundary { complete: Some(true), outside: None };
+        own.gather_molecules(complete);
+        let gathered = own.spheres.clone();
+        own.gather_molecules(complete);
+        assert_eq!(own.spheres, gathered);
+        let center = |row| own.spheres.center(row);
+        assert_eq!([center(0), center(1), center(2)], [-DVec3::X, DVec3::ZERO, DVec3::X]);
+        assert!((center(4).z - center(3).z - 0.8).abs() < 1e-12 && center(3).z < 0.0);
+        own.draw_boundary(complete, &[]).unwrap();
+        // The first is on eight corners, with both of its bonds.
+        let bonds = own.frame.bonds.as_ref().map_or(0, Bonds::len);
+        assert_eq!((own.spheres.len(), bonds), (8 * 3 + 2, 8 * 2 + 1));
+        let cut = Boundary { outside: Some(Outside::None), ..complete };
+        let mut other = particles();
+        other.gather_molecules(cut);
+        assert_eq!(other.spheres, particles().spheres);
     }
 
     #[test]
