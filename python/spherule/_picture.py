@@ -129,6 +129,10 @@ class Picture:
             >>> spherule.render([[0, 0, 0]], radius=1, size=(40, 30), spp=4).encode()[1:4]
             b'PNG'
         """
+        return self._encoded(f"picture.{_values.text('format', format).lstrip('.')}", bits, quality)
+
+    def _encoded(self, path: str, bits: Any, quality: Any) -> bytes:
+        """The bytes of a file of this name."""
         from . import _native
 
         bits = _values.integer("bits", bits)
@@ -140,7 +144,7 @@ class Picture:
         if self.title:
             metadata.append(("Title", self.title))
         table = {
-            "path": f"picture.{_values.text('format', format).lstrip('.')}",
+            "path": path,
             "exposure": float(self.exposure),
             "filmic": self._filmic(),
             "bits": bits,
@@ -172,7 +176,7 @@ class Picture:
         import tempfile
 
         name = _values.path("path", path)
-        data = self.encode(os.path.splitext(name)[1] or name, bits=bits, quality=quality)
+        data = self._encoded(name, bits, quality)
         folder = os.path.dirname(os.path.abspath(name))
         descriptor, beside = tempfile.mkstemp(prefix=".spherule-", dir=folder)
         try:

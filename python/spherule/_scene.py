@@ -428,6 +428,9 @@ def _style(given: Mapping[str, Any]) -> dict[str, Any]:
             raise Error(f"`color_range` is {low:g} to {high:g}, but the lower number comes first")
         ends = ",".join(end if isinstance(end, str) else repr(end) for end in (low, high))
     names = ("select", "hide", "colors", "color_by", "color_title", "model", "bonds", "translucent")
+    for name, place in (("color_by", "`values`"), ("bonds", "`Particles(..., bonds=...)`")):
+        if not (given.get(name) is None or isinstance(given[name], str)):
+            raise Error(f"`{name}` is {_values.shown(given[name])}, but must be a string; arrays go into {place}")
     style: dict[str, Any] = {name: _optional(given, name, _values.text) for name in names}
     style["color_map"] = _optional(given, "color_map", _matplotlib.map_words)
     through = given.get("opacity")

@@ -74,7 +74,7 @@ fn changed<T: Copy + PartialEq>(before: &[T], after: &[T]) -> Vec<(u32, T)> {
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct EncodeTable {
-    /// A name that ends in the format's suffix.
+    /// The file, or a name that ends in the format's suffix.
     path: PathBuf,
     exposure: f64,
     filmic: bool,
@@ -110,7 +110,7 @@ pub(crate) fn encode<'py>(
     let page = graphics::Format::of_suffix(&table.path);
     let page = page.filter(|page| *page != graphics::Format::Png);
     let format = page.map_or_else(|| Format::of_suffix(&table.path), |_| Ok(Format::Png));
-    let format = format.map_err(fault)?;
+    let format = format.map_err(|why| fault(why.or_suffixes(&["pdf", "svg"])))?;
     let mut image = image(&pixels).map_err(fault)?;
     let size = (image.width, image.height);
     // Of a picture that was cut, annotations stay pixels.

@@ -40,6 +40,8 @@ PAIR = [[0, 0, 0], [1, 0, 0]]
         ({"title": 3}, ["`title`", "3"]),
         ({"values": [1, 2], "label_of_values": 3}, ["`label_of_values`", "3"]),
         ({"color_by": 3}, ["`color_by`", "3"]),
+        ({"color_by": [1.0, 2.0]}, ["`color_by`", "`values`"]),
+        ({"bonds": [[0, 1]]}, ["`bonds`", "Particles("]),
         ({"opacity": [0.5]}, ["`opacity`", "0.5"]),
         ({"opacity": True}, ["`opacity`", "True"]),
         ({"unit": "parsec"}, ["`unit`", "parsec", "angstrom"]),

@@ -188,6 +188,21 @@ const FOREIGN_OPTIONS: &[(&str, &[&str])] = &[
     ("--rotate", &["--view", "--roll", "--turntable"]),
     ("--rotation", &["--view", "--roll", "--turntable"]),
     ("--fov", &["--zoom", "--projection"]),
+    ("--dof", &["--aperture", "--focus"]),
+    ("--light", &["--preset", "--lit-from"]),
+    ("--lights", &["--preset", "--lit-from"]),
+    ("--lighting", &["--preset", "--lit-from"]),
+    ("--color", &["--color-by", "--type", "--style"]),
+    ("--colour", &["--color-by", "--type", "--style"]),
+    ("--scale", &["--zoom", "--radius-scale"]),
+    ("--frames", &["--frame"]),
+    ("--quality", &["--spp", "--until-error"]),
+    ("--antialias", &["--spp"]),
+    ("--representation", &["--model", "--style"]),
+    ("--repr", &["--model", "--style"]),
+    ("--supercell", &["--replicate"]),
+    ("--unit-cell", &["--cell"]),
+    ("--labels", &["--label"]),
     ("--transparent", &["--background transparent", "--opacity"]),
     ("--transparency", &["--opacity"]),
     ("--alpha", &["--opacity"]),
@@ -214,6 +229,21 @@ const FOREIGN_OPTIONS: &[(&str, &[&str])] = &[
     ("--out", &["--output"]),
 ];
 
+/// Models of other programs, and those of this one that are drawn alike.
+const FOREIGN_MODELS: &[(&str, &str)] = &[
+    ("vdw", "space-filling"),
+    ("cpk", "ball-and-stick"),
+    ("spacefill", "space-filling"),
+    ("spheres", "space-filling"),
+    ("sphere", "space-filling"),
+    ("balls", "space-filling"),
+    ("sticks", "licorice"),
+    ("stick", "licorice"),
+    ("tube", "licorice"),
+    ("wireframe", "licorice"),
+    ("lines", "licorice"),
+];
+
 /// Similarity of an unknown option to one that is suggested, 0 to 1, below which the suggestion misleads.
 const LIKENESS: f64 = 0.7;
 
@@ -224,7 +254,21 @@ fn with_better_tip(mut error: clap::Error) -> clap::Error {
         _ => None,
     };
     let Some(unknown) = text(&error, ContextKind::InvalidArg) else { return error };
+    if unknown.starts_with("--model ")
+        && let Some(value) = text(&error, ContextKind::InvalidValue)
+        && let Some((_, own)) =
+            FOREIGN_MODELS.iter().find(|(other, _)| value.eq_ignore_ascii_case(other))
+    {
+        let own = ContextValue::String((*own).to_owned());
+        error.insert(ContextKind::SuggestedValue, own);
+        return error;
+    }
     if error.kind() != ErrorKind::UnknownArgument {
+        return error;
+    }
+    if !unknown.starts_with('-') {
+        let tip = "one file is rendered, and each option takes one value; a value with blanks needs quotes";
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
         return error;
     }
     let same = FOREIGN_OPTIONS.iter().find(|(other, _)| *other == unknown).map(|(_, own)| *own);

@@ -5,7 +5,7 @@ use super::files::STREAM;
 use super::output;
 use super::write_file::check_destination;
 use spherule_render::film::Region;
-use spherule_render::image::Format;
+use spherule_render::image::{Format, ImageError};
 use std::io::{IsTerminal, stdout};
 use std::path::Path;
 
@@ -15,11 +15,11 @@ pub(super) fn is_stream(path: &Path) -> bool {
 }
 
 /// Returns the format of `--output-format`, or else that of the suffix; PNG for standard output.
-pub(super) fn format(path: &Path, typed: Option<Format>) -> Result<Format, Failure> {
+pub(super) fn format(path: &Path, typed: Option<Format>) -> Result<Format, ImageError> {
     match typed {
         Some(format) => Ok(format),
         None if is_stream(path) => Ok(Format::Png),
-        None => Ok(Format::of_suffix(path)?),
+        None => Format::of_suffix(path),
     }
 }
 

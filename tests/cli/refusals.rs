@@ -20,11 +20,9 @@ fn bad_input_is_refused_with_help() {
         ("render --size 0.1mm --dpi 72", 1, &["[0, 0]", "1 to 65535"]),
         ("render --dpi 0", 2, &["--dpi", "1 to 65535"]),
         ("render --opacity 130%", 2, &["--opacity", "between 0 and 1"]),
-        ("render --width 800", 2, &["'--size'"]),
-        ("render --resolution=300", 2, &["'--size'", "'--dpi'"]),
-        ("render --transparent", 2, &["'--background transparent'"]),
-        ("render --cmap jet", 2, &["'--color-map'"]),
-        ("render --title x", 2, &["'--label'"]),
+        ("render a.toml --size 85 mm", 2, &["'mm'", "quotes"]),
+        ("render --view top", 2, &["--view", "0,90"]),
+        ("render -o a.foo", 1, &["a.foo", ".ppm, .pdf, .svg"]),
         ("render --spp 0", 2, &["--spp", "from 1 to 16777216"]),
         ("render --spp -3", 2, &["--spp"]),
         ("render --until-error 0%", 2, &["--until-error", "1%"]),
@@ -67,6 +65,8 @@ fn bad_input_is_refused_with_help() {
         ),
         ("render --quiet --verbose", 2, &["--quiet", "--verbose"]),
         ("render missing.toml", 1, &["missing.toml", "cannot be read"]),
+        ("render ky.toml", 1, &["ky.toml", "`key.toml`"]),
+        ("render bda.xyz", 1, &["bda.xyz", "`bad.xyz`"]),
         ("render missing.csv", 1, &["missing.csv", "cannot be read"]),
         ("render key.toml", 1, &["key.toml:2:1", "sppp", "spp`?"]),
         ("render fov.toml", 1, &["fov.toml:2", "180"]),
@@ -89,6 +89,27 @@ fn bad_input_is_refused_with_help() {
         ("completions cobol", 2, &["cobol", "bash"]),
         ("paint", 2, &["paint", "neither a command nor a file"]),
     ];
+    refused(&folder, cases);
+    assert!(!folder.path("spherule.png").exists() && !folder.path("a.toml").exists());
+}
+
+#[test]
+fn words_of_other_programs_are_answered_by_those_that_do_the_same() {
+    let cases: &[(&str, i32, &[&str])] = &[
+        ("render --width 800", 2, &["'--size'"]),
+        ("render --resolution=300", 2, &["'--size'", "'--dpi'"]),
+        ("render --transparent", 2, &["'--background transparent'"]),
+        ("render --cmap jet", 2, &["'--color-map'"]),
+        ("render --dof 5", 2, &["'--aperture'"]),
+        ("render --color red", 2, &["'--color-by'"]),
+        ("render --model vdw", 2, &["'space-filling'"]),
+        ("render --title x", 2, &["'--label'"]),
+    ];
+    refused(&Folder::new(), cases);
+}
+
+/// Checks the exit code of each command, and that the message has these words.
+fn refused(folder: &Folder, cases: &[(&str, i32, &[&str])]) {
     for (line, code, words) in cases {
         let output = folder.run(&line.split(' ').collect::<Vec<_>>());
         let message = text(&output.stderr);
@@ -99,7 +120,6 @@ fn bad_input_is_refused_with_help() {
             assert!(message.contains(word), "{line} lacks `{word}`: {message}");
         }
     }
-    assert!(!folder.path("spherule.png").exists() && !folder.path("a.toml").exists());
 }
 
 #[test]

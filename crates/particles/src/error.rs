@@ -1,8 +1,10 @@
 //! Errors in files: the file, the position in it, and advice.
 
+use crate::suggest;
 use std::fmt::{self, Debug, Formatter};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 use thiserror::Error;
 
 /// Maximum number of characters of a message or a help.
@@ -47,11 +49,34 @@ impl Debug for FileError {
     }
 }
 
+/// Number of names of a folder among which one is looked for that is meant.
+const NAMES: usize = 10_000;
+
+/// Returns the file of the same folder whose name is nearest to a missing one's.
+fn near(path: &Path) -> Option<PathBuf> {
+    let folder = path.parent().filter(|folder| *folder != Path::new(""));
+    let entries = fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?.take(NAMES);
+    let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let names: Vec<String> = names.collect();
+    let near = suggest::nearest(path.file_name()?.to_str()?, names.iter().map(String::as_str));
+    Some(path.with_file_name(near?))
+}
+
 impl FileError {
     /// Returns an error that concerns a whole file.
     pub fn whole_file(path: &Path, message: impl Into<String>) -> Self {
         let message = clipped(message);
         Self { path: path.to_path_buf(), message, help: None, place: None, cut_off: false }
+    }
+
+    /// Returns the error of a file that the system does not read, with the nearest name in its folder if it is not there.
+    pub fn unreadable(path: &Path, error: &io::Error) -> Self {
+        let fault = Self::whole_file(path, format!("cannot be read: {error}"));
+        let near = if error.kind() == io::ErrorKind::NotFound { near(path) } else { None };
+        match near {
+            Some(near) => fault.with_help(format!("did you mean `{}`?", near.display())),
+            None => fault,
+        }
     }
 
     /// Returns an error at the bytes `span` of `text`, which begins at line `first_line` of the file.

@@ -60,8 +60,7 @@ impl Source {
     /// Opens a file, or standard input for `-`.
     pub(crate) fn open(path: &Path, progress: &ReadProgress) -> Result<Self, FileError> {
         let path: Arc<Path> = path.into();
-        let fault =
-            |error: &io::Error| FileError::whole_file(&path, format!("cannot be read: {error}"));
+        let fault = |error: &io::Error| FileError::unreadable(&path, error);
         let mut raw: Box<dyn Read + Send> = if is_standard_input(&path) {
             Box::new(io::stdin())
         } else {

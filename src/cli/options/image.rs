@@ -120,7 +120,7 @@ pub(in crate::cli) struct ReportArgs {
 pub(in crate::cli) fn picture_help() -> String {
     format!(
         "Output image: a name that ends in {}, or - for standard output",
-        Format::written_suffixes()
+        Format::written_suffixes(&[])
     )
 }
 

@@ -90,6 +90,9 @@ pub(in crate::cli) struct RenderSetup<'a> {
     pub(in crate::cli) report: ReportArgs,
 }
 
+/// Suffixes of pages and videos.
+const OTHERS: [&str; 6] = ["pdf", "svg", "mp4", "mov", "webm", "gif"];
+
 impl<'a> RenderSetup<'a> {
     /// Creates the setup from the arguments.
     pub(in crate::cli) fn new(args: &'a RenderArgs) -> Result<Self, Failure> {
@@ -113,7 +116,8 @@ impl<'a> RenderSetup<'a> {
         let format = match video {
             Some(_) => Format::Ppm,
             None if page.is_some() => Format::Png,
-            None => picture_file::format(&args.output, args.encoding.output_format)?,
+            None => picture_file::format(&args.output, args.encoding.output_format)
+                .map_err(|error| error.or_suffixes(&OTHERS))?,
         };
         if args.sequence.skip_existing && format == Format::Pfm {
             let message = "--skip-existing needs metadata, which PFM files cannot store; use an --output \

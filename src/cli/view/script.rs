@@ -68,7 +68,7 @@ pub(super) fn manual() -> String {
     let mut text =
         "Commands of scripts for --headless-script, one per line; # starts a comment:".to_owned();
     for (name, arguments, help) in COMMANDS {
-        let help = help.replace("SUFFIXES", &Format::written_suffixes());
+        let help = help.replace("SUFFIXES", &Format::written_suffixes(&[]));
         // Writing to a string cannot fail.
         let _ = write!(text, "\n  {:<30} {help}", format!("{name} {arguments}"));
     }

@@ -37,10 +37,12 @@ pub enum ImageError {
         reason: String,
     },
     /// The suffix of the destination belongs to no format that can be written.
-    #[error("unknown format of {path:?}; use the suffix {}", Format::written_suffixes())]
+    #[error("unknown format of {path:?}; use the suffix {}", Format::written_suffixes(others))]
     UnknownSuffix {
         /// The destination.
         path: PathBuf,
+        /// Suffixes of other files that may be there, such as pages and videos.
+        others: &'static [&'static str],
     },
     /// The destination cannot be written; what was there before is untouched.
     #[error("cannot write {path:?}: {reason}")]
@@ -118,6 +120,15 @@ pub enum ImageError {
 }
 
 impl ImageError {
+    /// Returns the error where files with other suffixes may be, too.
+    #[must_use]
+    pub fn or_suffixes(self, others: &'static [&'static str]) -> Self {
+        match self {
+            Self::UnknownSuffix { path, .. } => Self::UnknownSuffix { path, others },
+            other => other,
+        }
+    }
+
     pub(super) fn malformed(path: &Path, format: Format, reason: String) -> Self {
         Self::Malformed { path: path.to_owned(), format, reason }
     }

@@ -85,10 +85,11 @@ impl Format {
         }
     }
 
-    /// Returns the preferred suffixes of all writable formats as a list in a sentence: `.png, .exr or
+    /// Returns the preferred suffixes of all writable formats, and others, as a list in a sentence: `.png, .exr or
     /// .jpg`.
-    pub fn written_suffixes() -> String {
-        Self::list_suffixes(|_| true)
+    pub fn written_suffixes(others: &[&str]) -> String {
+        let own = Self::WRITTEN.into_iter().map(|format| format.suffixes()[0]);
+        list(own.chain(others.iter().copied()).map(|suffix| format!(".{suffix}")))
     }
 
     /// Returns the preferred suffixes of the writable formats with a property.
@@ -164,7 +165,7 @@ impl Format {
         let mut formats = Self::WRITTEN.into_iter();
         formats
             .find(|format| format.suffixes().contains(&suffix.as_str()))
-            .ok_or_else(|| ImageError::UnknownSuffix { path: path.to_owned() })
+            .ok_or_else(|| ImageError::UnknownSuffix { path: path.to_owned(), others: &[] })
     }
 
     /// Returns whether files of this format can store these channels.

@@ -68,7 +68,7 @@ pub fn included_files(path: &Path) -> Vec<PathBuf> {
 fn read_text(path: &Path) -> Result<String, FileError> {
     let bytes = File::open(path)
         .and_then(|file| read_at_most(file, MAX_BYTES))
-        .map_err(|error| FileError::whole_file(path, format!("cannot be read: {error}")))?;
+        .map_err(|error| FileError::unreadable(path, &error))?;
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         FileError::whole_file(path, format!("is not UTF-8 text (byte {at})"))

@@ -103,7 +103,9 @@ impl FromStr for View {
         let names = || Axis::ALL.iter().map(|(name, _)| *name).chain(["iso", "auto"]);
         view.ok_or_else(|| {
             let help = suggest::help(text, names(), "sides are");
-            format!("{help}; or give azimuth and elevation, as in 30,20, or a vector, as in 1,1,0")
+            format!(
+                "{help}; or give azimuth and elevation, as in 30,20 or, from above, 0,90, or a vector, as in 1,1,0"
+            )
         })
     }
 }
