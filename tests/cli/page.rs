@@ -7,7 +7,7 @@ use spherule_render::image::Image;
 use std::fs::{File, read_to_string};
 use std::io::{Read, Write};
 use std::net::TcpStream;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tungstenite::client::IntoClientRequest;
 use tungstenite::{Message, WebSocket};
 
@@ -267,6 +267,33 @@ fn one_page_steers_and_others_look() {
     first.until(|state| state["pages"] == 1);
     first.send("size 52x30");
     first.image(|header| header["width"] == 52);
+}
+
+#[test]
+fn motions_are_seen_at_last_and_told_ten_times_a_second() {
+    let folder = Folder::new();
+    let server = Server::start(&folder, &["--spp", "1"]);
+    let mut page = server.page();
+    page.send("size 64x48");
+    page.image(is_finished);
+    page.send("press 10,10");
+    let start = Instant::now();
+    for step in 0..100 {
+        page.send(&format!("move {},{}", 20 + step % 30, 10 + step));
+    }
+    let mut states = 0;
+    // The size, the press and all motions.
+    while page.read().is_none_or(|sent| sent.header["heard"] != 102) {
+        states += u128::from(page.state.take() != Value::Null);
+    }
+    let most = 3 + start.elapsed().as_millis() / 100;
+    assert!(states <= most, "{states} states, at most {most}");
+    page.send("release");
+    let finished = page.image(is_finished);
+    for stage in ["wait", "render", "queue", "encode"] {
+        let time = finished.header["times"][stage].as_f64();
+        assert!(time.is_some_and(|time| time >= 0.0), "{stage}: {time:?}");
+    }
 }
 
 #[test]

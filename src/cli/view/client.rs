@@ -28,14 +28,13 @@ const ANSWERS: usize = 1 << 14;
 /// Time that a write may take.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Number of strips of an image while the camera moves.
-const STRIPS: u32 = 4;
-
 /// An image to send.
 pub(super) struct Shot {
     pub(super) number: u64,
     /// Number of commands of the steering page that it follows.
     pub(super) heard: u64,
+    /// Time of the last of them.
+    asked: Instant,
     pub(super) picture: Arc<Picture>,
     /// The image with its scene, if it is finished.
     pub(super) finished: Option<Saved>,
@@ -48,9 +47,10 @@ impl Shot {
         picture: Arc<Picture>,
         number: u64,
         heard: u64,
+        asked: Instant,
         finished: Option<Saved>,
     ) -> Self {
-        Self { number, heard, picture, finished, file: OnceLock::new() }
+        Self { number, heard, asked, picture, finished, file: OnceLock::new() }
     }
 
     /// The PNG file of a finished image, as `spherule render` writes it.
@@ -123,6 +123,12 @@ impl Client {
     /// Sends an image, instead of one that waits.
     pub(super) fn show(&self, shot: Arc<Shot>) {
         self.change(|outbox| outbox.shot = Some(shot));
+    }
+
+    /// Returns whether no image waits or is on its way; or, if the next one is `late`, whether it would be sent at once.
+    pub(super) fn is_ready(&self, late: bool) -> bool {
+        let outbox = self.outbox();
+        outbox.shot.is_none() && outbox.in_flight.len() < if late { IN_FLIGHT } else { 1 }
     }
 
     /// Records that an image is shown.
@@ -251,6 +257,7 @@ pub(super) fn deliver<E>(
 /// Returns the message of an image; `before` is the one that the page shows.
 fn packed(shot: &Shot, before: Option<&Picture>, pace: Pace) -> Vec<u8> {
     let picture = &*shot.picture;
+    let begun = Instant::now();
     let (width, height) = picture.size();
     let whole = Tile { x: 0, y: 0, width, height };
     let is_preview = picture.samples == 0;
@@ -261,7 +268,7 @@ fn packed(shot: &Shot, before: Option<&Picture>, pace: Pace) -> Vec<u8> {
         let same = before.filter(|own| own.size() == (width, height) && !is_preview);
         let tiles = match same {
             Some(own) => tiles::changed(&own.pixels, &picture.pixels, width),
-            None => tiles::strips(width, height, STRIPS),
+            None => tiles::strips(width, height),
         };
         let quality = if is_preview { pace.moving() } else { pace.resting() };
         let files = tiles::encode(&picture.pixels, width, &tiles, quality);
@@ -285,9 +292,20 @@ fn packed(shot: &Shot, before: Option<&Picture>, pace: Pace) -> Vec<u8> {
         "finished": shot.finished.is_some(),
         "kind": kind,
         "tiles": places,
+        // Milliseconds, to measure.
+        "times": {
+            "wait": milliseconds(picture.started.saturating_duration_since(shot.asked)),
+            "render": milliseconds(picture.elapsed),
+            "queue": milliseconds(begun.saturating_duration_since(picture.started + picture.elapsed)),
+            "encode": milliseconds(begun.elapsed()),
+        },
     });
     let files: Vec<&[u8]> = files.iter().map(Vec::as_slice).collect();
     framed(&header.to_string(), &files)
+}
+
+fn milliseconds(time: Duration) -> f64 {
+    1000.0 * time.as_secs_f64()
 }
 
 /// Returns the length of the header in four bytes, lowest first, the header and the files.

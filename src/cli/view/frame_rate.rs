@@ -2,16 +2,16 @@
 
 use std::time::Duration;
 
-/// Seconds that an image may take while the camera moves: initial value, maximum and minimum. The fraction of
-/// a thirtieth of a second depends on the machine's load.
-const BUDGET: f64 = 0.016;
-const LARGEST: f64 = 0.026;
-const SMALLEST: f64 = 0.012;
+/// Seconds that an image may take while the camera moves: initial value, maximum and minimum. The page needs as long to show
+/// it, and a motion waits for half an image before, so that it is seen after 25 ms.
+const BUDGET: f64 = 0.010;
+const LARGEST: f64 = 0.014;
+const SMALLEST: f64 = 0.008;
 
 /// Maximum seconds between images, and the factors by which the budget falls after a late image and else
 /// rises, so that one image in eighty is late (Robbins & Monro, "A Stochastic Approximation Method", The
 /// Annals of Mathematical Statistics 1951).
-const LATE: f64 = 0.031;
+const LATE: f64 = 0.025;
 const FALL: f64 = 0.85;
 const RISE: f64 = 1.002;
 

@@ -24,16 +24,24 @@ use spherule_render::image::Format;
 use spherule_render::scene::{Camera, Scene, Settings};
 use std::collections::{HashSet, VecDeque};
 use std::path::Path;
-use std::sync::mpsc::{Receiver, SyncSender};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender};
 use std::sync::{Arc, RwLock};
 use std::thread;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Maximum number of inputs that are handled before pages are told.
 const BATCH: usize = 64;
 
 /// Maximum number of commands that wait for the first scene.
 const EARLY: usize = 1000;
+
+/// Time after which the first image of a version is rendered although the last one is not shown yet; and although the page
+/// shows none, since others may.
+const INTERVAL: Duration = Duration::from_millis(33);
+const LONGEST: Duration = Duration::from_millis(500);
+
+/// Time between two states that pages are told while the camera moves.
+const PAUSE: Duration = Duration::from_millis(100);
 
 /// Size of the image before a page says its own.
 const SIZE: (u32, u32) = (1280, 720);
@@ -50,6 +58,15 @@ impl From<Call> for Input {
     fn from(call: Call) -> Self {
         Self::Call(call)
     }
+}
+
+/// The commands that a version of the view follows.
+struct Followed {
+    version: u64,
+    /// Number of commands of the steering page before it.
+    heard: u64,
+    /// Time of the last of them.
+    at: Instant,
 }
 
 /// The session.
@@ -76,14 +93,22 @@ pub(super) struct Host {
     warned: HashSet<String>,
     /// The state that pages know.
     told: String,
-    /// Number of commands of the steering page, and for versions of the view, in their order, that before them.
+    told_at: Instant,
+    /// Whether the last command moved the pointer or the camera.
+    moves: bool,
+    /// Number of commands of the steering page, and what versions of the view follow, in their order.
     heard: u64,
-    versions: VecDeque<(u64, u64)>,
+    versions: VecDeque<Followed>,
     /// Number of the last image, and the image.
     shots: u64,
     last: Option<Arc<Shot>>,
     /// Time of the last image while the camera moves.
     moved: Option<Instant>,
+    /// Number of requested images that are not done, and the time of the last request for the first image of a version.
+    rendering: usize,
+    requested: Instant,
+    /// Time after which something is due without an input.
+    pause: Option<Duration>,
 }
 
 impl Host {
@@ -119,11 +144,16 @@ impl Host {
             greeting,
             warned: HashSet::new(),
             told: String::new(),
+            told_at: Instant::now(),
+            moves: false,
             heard: 0,
             versions: VecDeque::new(),
             shots: 0,
             last: None,
             moved: None,
+            rendering: 0,
+            requested: Instant::now(),
+            pause: None,
         })
     }
 
@@ -132,8 +162,17 @@ impl Host {
     /// # Errors
     /// The first scene cannot be loaded.
     pub(super) fn run(mut self, inputs: &Receiver<Input>) -> Result<(), Failure> {
-        while let Ok(first) = inputs.recv() {
-            for input in std::iter::once(first).chain(inputs.try_iter().take(BATCH)) {
+        loop {
+            let first = match self.pause {
+                Some(pause) => inputs.recv_timeout(pause),
+                None => inputs.recv().map_err(RecvTimeoutError::from),
+            };
+            let first = match first {
+                Ok(first) => Some(first),
+                Err(RecvTimeoutError::Timeout) => None,
+                Err(RecvTimeoutError::Disconnected) => return Ok(()),
+            };
+            for input in first.into_iter().chain(inputs.try_iter().take(BATCH)) {
                 match input {
                     Input::Call(call) => self.hear(call),
                     Input::Message(Message::Loaded(Err(failure))) if self.scene.is_none() => {
@@ -145,7 +184,6 @@ impl Host {
             }
             self.update();
         }
-        Ok(())
     }
 
     /// Handles what a page does.
@@ -167,6 +205,7 @@ impl Host {
                     self.steering = self.clients.first().map(|(number, _)| *number);
                 }
             }
+            Call::Shown => (),
             Call::Line(number, line) => {
                 if let Err(message) = self.obey(number, &line) {
                     self.tell(number, &json!({ "error": message }).to_string());
@@ -201,6 +240,9 @@ impl Host {
             return Ok(());
         }
         self.heard += u64::from(!looks);
+        if !looks {
+            self.moves = matches!(step, Step::Move(_) | Step::Wheel { .. } | Step::Turn(_));
+        }
         let resized = matches!(step, Step::Size(..));
         for step in step.parts() {
             let action = self.viewer.step(&step).map_err(|failure| brief(&failure))?;
@@ -273,8 +315,14 @@ impl Host {
                     self.workers.load(&content);
                 }
             }
-            Message::Picture(Ok(Some(picture))) => self.show(picture),
-            Message::Picture(Ok(None)) => (),
+            Message::Picture(picture) => {
+                self.rendering = self.rendering.saturating_sub(1);
+                match picture {
+                    Ok(Some(picture)) => self.show(*picture),
+                    Ok(None) => (),
+                    Err(failure) => self.show_error(&failure),
+                }
+            }
             Message::Picked(Ok(picked), Purpose::Hover) => {
                 let text = json!({ "hover": picked.map(|picked| picked.text) }).to_string();
                 self.tell_all(&text);
@@ -288,9 +336,7 @@ impl Host {
                     output::print(line);
                 }
             }
-            Message::Picture(Err(failure)) | Message::Picked(Err(failure), _) => {
-                self.show_error(&failure);
-            }
+            Message::Picked(Err(failure), _) => self.show_error(&failure),
         }
     }
 
@@ -339,11 +385,13 @@ impl Host {
         let finished = picture.samples >= self.viewer.settings.spp;
         let finished = finished.then(|| Saved::of(&self.viewer)).flatten();
         self.shots += 1;
-        while self.versions.get(1).is_some_and(|(version, _)| *version <= picture.version) {
+        while self.versions.get(1).is_some_and(|next| next.version <= picture.version) {
             self.versions.pop_front();
         }
-        let heard = self.versions.front().map_or(0, |(_, heard)| *heard);
-        let shot = Arc::new(Shot::new(Arc::clone(picture), self.shots, heard, finished));
+        let followed = self.versions.front();
+        let (heard, asked) = followed.map_or((0, picture.started), |own| (own.heard, own.at));
+        let shot = Shot::new(Arc::clone(picture), self.shots, heard, asked, finished);
+        let shot = Arc::new(shot);
         self.clients.iter().for_each(|(_, client)| client.show(Arc::clone(&shot)));
         self.last = Some(shot);
     }
@@ -356,20 +404,31 @@ impl Host {
 
     /// Requests the next image, and tells pages what is new. Nothing is rendered that nobody sees.
     fn update(&mut self) {
+        self.pause = None;
         match self.versions.back_mut() {
-            Some((version, heard)) if *version == self.viewer.version => *heard = self.heard,
-            _ => self.versions.push_back((self.viewer.version, self.heard)),
+            Some(last) if last.version == self.viewer.version => last.heard = self.heard,
+            _ => self.versions.push_back(Followed {
+                version: self.viewer.version,
+                heard: self.heard,
+                at: Instant::now(),
+            }),
         }
         if self.scene.is_some() {
             let request = self.viewer.next_request().filter(|_| !self.clients.is_empty());
-            self.workers.request_image(request);
+            match request {
+                Some(request) if request.first && !self.is_due() => {
+                    self.workers.request_image(None);
+                }
+                request => {
+                    if request.as_ref().is_some_and(|request| request.first) {
+                        self.requested = Instant::now();
+                    }
+                    self.rendering += usize::from(self.workers.request_image(request));
+                }
+            }
         }
         self.send_image();
-        let told = json!({ "state": self.facts() }).to_string();
-        if told != self.told {
-            self.clients.iter().for_each(|(_, client)| client.state(told.clone()));
-            self.told = told;
-        }
+        self.tell_state();
         if self.viewer.sampled().is_some() && !self.is_loading() {
             for (number, suffix) in std::mem::take(&mut self.wanted) {
                 if let Err(message) = self.download(number, &suffix) {
@@ -377,6 +436,42 @@ impl Host {
                 }
             }
         }
+    }
+
+    /// Tells pages the state, if it is another one: while the camera moves, not with each motion, since it takes them as long
+    /// as an image.
+    fn tell_state(&mut self) {
+        let left = PAUSE.saturating_sub(self.told_at.elapsed());
+        if self.moves && !left.is_zero() {
+            return self.wake_after(left);
+        }
+        let told = json!({ "state": self.facts() }).to_string();
+        if told != self.told {
+            self.clients.iter().for_each(|(_, client)| client.state(told.clone()));
+            (self.told, self.told_at) = (told, Instant::now());
+        }
+    }
+
+    /// Returns whether the first image of a version may be rendered: the camera is then where it is when the page can show it.
+    /// Images that wait for each other are older, and take the browser's time; on a long way, several are sent.
+    fn is_due(&mut self) -> bool {
+        let passed = self.requested.elapsed();
+        let client = self.clients.iter().find(|(number, _)| self.steering == Some(*number));
+        let ready = client.is_none_or(|(_, client)| client.is_ready(passed >= INTERVAL));
+        if self.rendering > 0 {
+            return false;
+        }
+        if ready || passed >= LONGEST {
+            return true;
+        }
+        let next = if passed < INTERVAL { INTERVAL } else { LONGEST };
+        self.wake_after(next.saturating_sub(passed));
+        false
+    }
+
+    /// Goes on after this time, without an input.
+    fn wake_after(&mut self, time: Duration) {
+        self.pause = Some(self.pause.map_or(time, |pause| pause.min(time)));
     }
 
     /// Returns the state that pages are told.

@@ -7,7 +7,7 @@ use spherule_render::noise::Noise;
 use spherule_render::overlay::Matte;
 use spherule_render::scene::{Camera, Look, Settings};
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// The way to render an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,6 +55,8 @@ pub(super) struct Picture {
     /// Rays of the last samples, and their time.
     pub(super) rays: u64,
     pub(super) elapsed: Duration,
+    /// Start of the render.
+    pub(super) started: Instant,
 }
 
 /// An image with overlays.

@@ -28,6 +28,8 @@ pub(super) const FILES: [(&str, &str, &str); 4] = [
 /// Actions of pages.
 pub(super) enum Call {
     Joined(u64, Arc<Client>),
+    /// A page has shown an image.
+    Shown,
     /// A page sent a command.
     Line(u64, String),
     Left(u64),
@@ -116,7 +118,7 @@ fn converse<T: From<Call>>(
             Ok(Message::Text(text)) => match text.strip_prefix("shown ") {
                 Some(shown) => {
                     shown.parse().into_iter().for_each(|shown| client.shown(shown));
-                    true
+                    call(Call::Shown)
                 }
                 None => call(Call::Line(number, text.to_string())),
             },

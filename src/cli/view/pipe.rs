@@ -84,6 +84,7 @@ fn listen(inputs: &SyncSender<Input>) -> io::Result<()> {
             page = Page::join(next, inputs)?;
         } else if let Some(shown) = line.strip_prefix("shown ") {
             shown.parse().into_iter().for_each(|shown| page.client.shown(shown));
+            tell(inputs, Call::Shown)?;
         } else {
             tell(inputs, Call::Line(page.number, line))?;
         }

@@ -129,6 +129,7 @@ impl Renderer {
             rays,
             pixels: Arc::default(),
             elapsed: Duration::ZERO,
+            started: start,
         };
         let (image, matte) = picture.visible();
         picture.pixels = Arc::new(self.tone_mapper.map(image, matte, request.display));

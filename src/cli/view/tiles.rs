@@ -6,6 +6,11 @@ use rayon::prelude::*;
 /// Side of a tile in pixels: a multiple of the blocks of JPEG with subsampled color.
 const SIDE: u32 = 128;
 
+/// Maximum number of strips of an image, and minimum number of pixels of each: smaller ones take longer to pass to other
+/// threads than to decode.
+const STRIPS: u32 = 4;
+const STRIP: u32 = 1 << 17;
+
 /// Rows of a strip are a multiple of this.
 const BLOCK: u32 = 16;
 
@@ -18,9 +23,10 @@ pub(super) struct Tile {
     pub(super) height: u32,
 }
 
-/// Divides an image into about `count` strips of all columns.
-pub(super) fn strips(width: u32, height: u32, count: u32) -> Vec<Tile> {
-    let rows = height.div_ceil(count.max(1)).next_multiple_of(BLOCK);
+/// Divides an image into a few strips of all columns, as many as are encoded and decoded at a time.
+pub(super) fn strips(width: u32, height: u32) -> Vec<Tile> {
+    let count = (width * height / STRIP).clamp(1, STRIPS);
+    let rows = height.div_ceil(count).next_multiple_of(BLOCK);
     let strip = |y: u32| Tile { x: 0, y, width, height: rows.min(height - y) };
     (0..height).step_by(rows as usize).map(strip).collect()
 }
@@ -48,17 +54,23 @@ impl Tile {
 
 /// Encodes tiles of an image whose pixels are `0x00RRGGBB`, with a quality from 1 to 100.
 pub(super) fn encode(pixels: &[u32], width: u32, tiles: &[Tile], quality: u8) -> Vec<Vec<u8>> {
-    tiles.par_iter().map(|tile| encode_tile(pixels, width, *tile, quality)).collect()
+    let encode = |tile: &Tile| encode_tile(pixels, width, *tile, quality);
+    match tiles {
+        // Another thread would have to be woken.
+        [tile] => vec![encode(tile)],
+        _ => tiles.par_iter().map(encode).collect(),
+    }
 }
 
 fn encode_tile(pixels: &[u32], width: u32, tile: Tile, quality: u8) -> Vec<u8> {
-    let rows = tile.rows(width).flat_map(|row| &pixels[row]);
-    let codes: Vec<u8> =
-        rows.flat_map(|pixel| [16, 8, 0].map(|shift| (pixel >> shift) as u8)).collect();
+    let mut codes = Vec::with_capacity(4 * tile.width as usize * tile.height as usize);
+    for row in tile.rows(width) {
+        pixels[row].iter().for_each(|pixel| codes.extend_from_slice(&pixel.to_le_bytes()));
+    }
     let mut file = Vec::new();
     // Sides of images are at most 16,384, and writing to memory does not fail.
     let size = (tile.width as u16, tile.height as u16);
-    let encoded = Encoder::new(&mut file, quality).encode(&codes, size.0, size.1, ColorType::Rgb);
+    let encoded = Encoder::new(&mut file, quality).encode(&codes, size.0, size.1, ColorType::Bgra);
     debug_assert!(encoded.is_ok(), "{encoded:?}");
     file
 }
@@ -69,14 +81,16 @@ mod tests {
 
     #[test]
     fn strips_cover_the_image_once() {
-        for (size, count) in [((1280, 720), 2), ((17, 33), 4), ((1, 1), 8), ((640, 16), 3)] {
-            let strips = strips(size.0, size.1, count);
+        let sizes =
+            [((1280, 720), 4), ((640, 480), 2), ((400, 300), 1), ((1, 1), 1), ((16384, 16), 1)];
+        for (size, count) in sizes {
+            let strips = strips(size.0, size.1);
             let mut y = 0;
             for strip in &strips {
                 assert_eq!((strip.x, strip.y, strip.width), (0, y, size.0));
                 y += strip.height;
             }
-            assert!(y == size.1 && strips.len() <= count as usize, "{size:?} {strips:?}");
+            assert!(y == size.1 && strips.len() == count, "{size:?} {strips:?}");
         }
     }
 

@@ -24,8 +24,8 @@ pub(super) enum Message {
     Loading(Loading),
     /// New content is loaded.
     Loaded(Result<Box<LoadedScene>, Failure>),
-    /// A request is done; `None` if it was cancelled.
-    Picture(Result<Option<Picture>, Failure>),
+    /// A request is done; `None` if it was cancelled, or another one is done in its place.
+    Picture(Result<Option<Box<Picture>>, Failure>),
     Picked(Result<Option<Picked>, Failure>, Purpose),
 }
 
@@ -105,16 +105,19 @@ impl Workers {
 
     /// Requests an image. An older request is cancelled, unless it is the first image of its version;
     /// otherwise a moving camera would show nothing.
-    pub(super) fn request_image(&mut self, request: Option<RenderRequest>) {
+    ///
+    /// Returns whether it is a new one: then [`Message::Picture`] follows.
+    pub(super) fn request_image(&mut self, request: Option<RenderRequest>) -> bool {
         match (&request, &self.current) {
-            (Some(new), Some((old, _))) if new == old => return,
+            (Some(new), Some((old, _))) if new == old => return false,
             (_, Some((old, _))) if !old.first => self.cancel(),
             _ => (),
         }
-        let Some(request) = request else { return };
+        let Some(request) = request else { return false };
         let flag = Arc::new(AtomicBool::new(false));
         let _ = self.tasks.send(Task::Render(request.clone(), Arc::clone(&flag)));
         self.current = Some((request, flag));
+        true
     }
 
     /// Requests picking at a pixel, before rendering continues.
@@ -177,16 +180,19 @@ fn render(
 ) {
     let mut renderer: Option<Renderer> = None;
     while let Ok(first) = todo.recv() {
-        let mut last = None;
+        let (mut last, mut left_out) = (None, 0);
         for task in std::iter::once(first).chain(todo.try_iter()) {
             match (task, &mut renderer) {
                 (Task::Drop(done), _) => {
-                    (renderer, last) = (None, None);
+                    left_out += usize::from(last.take().is_some());
+                    renderer = None;
                     drop(done);
                 }
                 (Task::Set(stage), None) => renderer = Some(new(*stage)),
                 (Task::Set(stage), Some(renderer)) => renderer.set(*stage),
-                (Task::Render(request, cancel), _) => last = Some((request, cancel)),
+                (Task::Render(request, cancel), _) => {
+                    left_out += usize::from(last.replace((request, cancel)).is_some());
+                }
                 (Task::Pick((camera, settings), pixel, purpose), Some(renderer)) => {
                     let picked = pool.install(|| renderer.pick(&camera, &settings, pixel));
                     if !notify(Message::Picked(picked, purpose)) {
@@ -196,9 +202,15 @@ fn render(
                 (Task::Pick(..), None) => (),
             }
         }
-        if let (Some((request, cancel)), Some(renderer)) = (last, &mut renderer)
-            && !notify(Message::Picture(pool.install(|| renderer.render(&request, &cancel))))
-        {
+        let rendered = match (last, &mut renderer) {
+            (Some((request, cancel)), Some(renderer)) => {
+                Some(pool.install(|| Ok(renderer.render(&request, &cancel)?.map(Box::new))))
+            }
+            (Some(_), None) => Some(Ok(None)),
+            (None, _) => None,
+        };
+        let skipped = (0..left_out).map(|_| Ok(None));
+        if !skipped.chain(rendered).all(|picture| notify(Message::Picture(picture))) {
             return;
         }
     }

@@ -8,11 +8,12 @@ use crate::integrator::Job;
 use crate::integrator::generate::{dither_thresholds, generate_centers};
 use crate::integrator::preview::{self, Lighting};
 use crate::integrator::workspace::{BATCH_PATHS, Workspace};
-use crate::scene::{Integrator, Rgb, Settings};
+use crate::scene::{Filter, Integrator, Rgb, Settings};
 use crate::world::{Irradiance, World};
 use rayon::prelude::*;
 use std::f32::consts::PI;
 use std::sync::atomic::Ordering;
+use std::sync::{Mutex, PoisonError};
 
 /// Tiles whose paths fill a batch.
 const TILES: usize = BATCH_PATHS / (TILE * TILE) as usize;
@@ -35,8 +36,9 @@ pub fn preview(
     shadows: bool,
 ) -> Result<Option<Image>, RenderError> {
     let region = check(world, settings, options)?;
-    // The glint of a light in glass is left to the mirrored ray.
-    let chosen = Settings { caustics: false, ..settings.clone() };
+    // The glint of a light in glass is left to the mirrored ray, and rays through the middles of pixels need no table of a
+    // filter, which would take a millisecond.
+    let chosen = Settings { caustics: false, filter: Filter::Box, ..settings.clone() };
     let job = Job::new(world, &chosen, 1, options.tracer, options.elisions);
     let occlusion = matches!(settings.integrator, Integrator::Ao { .. });
     let irradiance = if occlusion {
@@ -52,14 +54,17 @@ pub fn preview(
     let rows = pixels.par_chunks_mut(width * TILE as usize);
     let rows = rows.zip(tiles.par_chunks(width.div_ceil(TILE as usize)));
     let cancelled = || options.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed));
-    rows.for_each_init(
-        || Workspace::new(world, options.elisions),
-        |work, (pixels, tiles)| {
-            if !cancelled() {
-                render_row(&job, &lighting, tiles, width, pixels, work);
-            }
-        },
-    );
+    // One for each thread, not for each part of the rows: to clear one takes as long as thousands of rays.
+    let spare = Mutex::new(Vec::new());
+    let spare = || spare.lock().unwrap_or_else(PoisonError::into_inner);
+    rows.for_each(|(pixels, tiles)| {
+        if !cancelled() {
+            let own = spare().pop();
+            let mut work = own.unwrap_or_else(|| Workspace::new(world, options.elisions));
+            render_row(&job, &lighting, tiles, width, pixels, &mut work);
+            spare().push(work);
+        }
+    });
     Ok((!cancelled()).then_some(Image { width: region.width, height: region.height, pixels }))
 }
 

@@ -14,7 +14,7 @@ function mount(root, connect) {
   // Connection --------------------------------------------------------------------------------------------------------
 
   /** Number of commands that were sent, the times of those that no image follows yet, and for each image the milliseconds since
-      the commands that it is the first to follow: for measurements. */
+      the commands that it is the first to follow, those of its stages, and its size: for measurements. */
   let sent = 0, waiting = [];
   view.measured = [];
 
@@ -82,12 +82,14 @@ function mount(root, connect) {
     const length = new DataView(data).getUint32(0, true);
     const header = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, length)));
     let start = 4 + length;
+    const arrived = performance.now();
     if (header.file) return keep(header.file, new Blob([new Uint8Array(data, start)]));
-    const tiles = await Promise.all(header.tiles.map(([x, y, width, height, size]) => {
-      const blob = new Blob([new Uint8Array(data, start, size)], { type: header.kind });
+    const tiles = await Promise.all(header.tiles.map(async ([x, y, width, height, size]) => {
+      const file = new Uint8Array(data, start, size);
       start += size;
-      return createImageBitmap(blob, { colorSpaceConversion: "none" }).then((bitmap) => ({ x, y, bitmap }));
+      return { x, y, bitmap: await decode(file, header.kind) };
     }));
+    const decoded = performance.now();
     if (canvas.width !== header.width || canvas.height !== header.height) {
       canvas.width = header.width;
       canvas.height = header.height;
@@ -97,19 +99,35 @@ function mount(root, connect) {
       bitmap.close();
     }
     send(`shown ${header.picture}`);
-    measure(header.heard);
+    measure(header, { decode: decoded - arrived, draw: performance.now() - decoded });
     shown = header;
     canvas.dataset.picture = header.picture;
     canvas.dataset.samples = header.samples;
     canvas.dataset.finished = header.finished;
-    tellStatus();
+    // Texts of each preview would take as long as the image.
+    if (header.samples > 0) tellStatus();
+    else telling ||= setTimeout(tellStatus, 250);
   }
 
-  function measure(heard) {
+  let telling = 0;
+
+  /** Decodes a file of an image. */
+  async function decode(data, type) {
+    const colorSpaceConversion = "none";
+    // Not in a page that comes unencrypted from another machine.
+    if (!self.ImageDecoder) return createImageBitmap(new Blob([data], { type }), { colorSpaceConversion });
+    // Blobs go through another process.
+    const decoder = new ImageDecoder({ data, type, colorSpaceConversion });
+    const { image } = await decoder.decode();
+    decoder.close();
+    return image;
+  }
+
+  function measure({ heard, times, width, height }, own) {
     const now = performance.now();
     const rest = waiting.findIndex(([number]) => number > heard);
     const followed = waiting.splice(0, rest < 0 ? waiting.length : rest);
-    if (followed.length) view.measured.push(followed.map(([, time]) => now - time));
+    if (followed.length) view.measured.push({ since: followed.map(([, time]) => now - time), times: { ...times, ...own }, size: [width, height] });
     view.measured.splice(0, view.measured.length - 2000);
   }
 
@@ -126,8 +144,12 @@ function mount(root, connect) {
   /** Pixels of the image for a pixel of the page. */
   const scale = () => window.devicePixelRatio || 1;
 
+  /** The stage's place, which is measured when a drag starts: during it, that would take time for each motion. */
+  let box = null;
+
   function resize() {
-    const { width, height } = stage.getBoundingClientRect();
+    box = stage.getBoundingClientRect();
+    const { width, height } = box;
     // Nothing, while an output of a notebook is folded.
     if (width < 1) return;
     const side = (length) => Math.max(16, Math.round(length * scale()));
@@ -136,7 +158,8 @@ function mount(root, connect) {
   }
 
   function place(event) {
-    const { left, top } = stage.getBoundingClientRect();
+    if (!box || pointers.size === 0) box = stage.getBoundingClientRect();
+    const { left, top } = box;
     const round = (length) => Math.round(length * scale() * 100) / 100;
     return `${round(event.clientX - left)},${round(event.clientY - top)}`;
   }
@@ -149,6 +172,7 @@ function mount(root, connect) {
   canvas.addEventListener("pointerdown", (event) => {
     canvas.focus({ preventScroll: true });
     canvas.setPointerCapture(event.pointerId);
+    box = stage.getBoundingClientRect();
     pointers.set(event.pointerId, event);
     hideTip();
     if (pointers.size === 2) {
@@ -333,6 +357,8 @@ function mount(root, connect) {
   }
 
   function tellStatus() {
+    clearTimeout(telling);
+    telling = 0;
     if (!state) return;
     const parts = [`${number(state.spheres)} spheres`];
     if (shown) {
