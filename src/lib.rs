@@ -157,10 +157,10 @@ pub mod world {
 pub mod compose {
     #[doc(inline)]
     pub use spherule_render::compose::{
-        AnnotationRequest, Axes, Bar, CameraRequest, CellRequest, Content, Fault, Focus, LabelText,
-        Labels, LensRequest, LookAt, MeasureRequest, ROWS, Request, Sections, Shared, Staged,
-        Subject, Survey, Template, Value, change, choose, frame, light_ahead, place, position,
-        stage, zoom,
+        AnnotationRequest, Axes, Bar, CameraRequest, CellRequest, Content, Descriptions, Fault,
+        Focus, LabelText, Labels, LensRequest, LookAt, MeasureRequest, ROWS, Request, Sections,
+        Shared, Staged, Subject, Survey, Template, Value, change, choose, frame, light_ahead,
+        place, position, stage, zoom,
     };
 }
 
@@ -232,7 +232,7 @@ pub mod layers {
 #[cfg(feature = "drawing")]
 pub mod graphics {
     #[doc(inline)]
-    pub use spherule_render::graphics::{Drawing, Format, Page, PageError};
+    pub use spherule_render::graphics::{Drawing, Figure, Format, Page, PageError};
 }
 
 /// Videos of images, by the program `ffmpeg`.

@@ -6,8 +6,35 @@ use super::output;
 use super::write_file::check_destination;
 use spherule_render::film::Region;
 use spherule_render::image::{Format, ImageError};
+use spherule_render::video::Container;
 use std::io::{IsTerminal, stdout};
 use std::path::Path;
+
+/// The kind of an album, a file of all images of a render.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::cli) enum AlbumKind {
+    Video(Container),
+    Figure,
+}
+
+impl AlbumKind {
+    /// Returns the kind for the suffix of a name; `None` for other names.
+    pub(in crate::cli) fn of_suffix(path: &Path) -> Option<Self> {
+        let suffix = path.extension()?.to_str()?;
+        if ["html", "htm"].iter().any(|own| suffix.eq_ignore_ascii_case(own)) {
+            return Some(Self::Figure);
+        }
+        Container::of_suffix(path).map(Self::Video)
+    }
+
+    /// Returns its name with an article.
+    pub(in crate::cli) fn name(self) -> &'static str {
+        match self {
+            Self::Video(_) => "a video",
+            Self::Figure => "a page of HTML",
+        }
+    }
+}
 
 /// Returns whether the image goes to standard output.
 pub(super) fn is_stream(path: &Path) -> bool {

@@ -1,9 +1,10 @@
 //! Images for figures: transparent background, color bar inside, and metadata.
 
 use crate::folder::{Folder, SMALL, text};
+use flate2::read::ZlibDecoder;
 use spherule_render::image::{Image, read_metadata};
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Read};
 
 /// Three spheres in a row, with a column of numbers.
 const ATOMS: &str = "\
@@ -130,5 +131,88 @@ fn invalid_figures_are_refused() {
         let stderr = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
         assert_eq!(output.status.code(), Some(2), "{args:?}: {stderr}");
         assert!(stderr.contains(message), "{args:?}: {stderr}");
+    }
+}
+
+/// Returns the bytes of a text in Base64, decompressed if they are.
+fn unpacked(text: &str) -> Vec<u8> {
+    let digits = text.bytes().map(|letter| match letter {
+        b'A'..=b'Z' => letter - b'A',
+        b'a'..=b'z' => letter - b'a' + 26,
+        b'0'..=b'9' => letter - b'0' + 52,
+        b'+' => 62,
+        _ => 63,
+    });
+    let digits: Vec<u8> = digits.collect();
+    let four = |four: &[u8]| four.iter().fold(0, |word, digit| word << 6 | u32::from(*digit));
+    let bytes: Vec<u8> = digits
+        .chunks_exact(4)
+        .flat_map(|digits| four(digits).to_be_bytes()[1..].to_vec())
+        .collect();
+    let mut found = Vec::new();
+    match ZlibDecoder::new(&bytes[..]).read_to_end(&mut found) {
+        Ok(_) => found,
+        Err(_) => bytes,
+    }
+}
+
+/// Returns what is between two parts of a page, wherever it is.
+fn between<'p>(page: &'p str, first: &str, last: &str) -> Vec<&'p str> {
+    page.split(first).skip(1).filter_map(|rest| Some(rest.split_once(last)?.0)).collect()
+}
+
+#[test]
+fn pages_name_the_particles_that_they_show() {
+    let folder = folder();
+    picture(&folder, &["-o", "a.html"]);
+    let page = text(&folder.read("a.html"));
+    assert!(!page.contains("http:") && !page.contains("https:"), "it needs nothing else");
+    let texts =
+        String::from_utf8(unpacked(between(&page, "id=\"texts\">", "<")[0])).expect("texts");
+    let texts: Vec<&str> = texts.lines().collect();
+    for (row, (kind, charge)) in [("C", "q = 1"), ("C", "q = 2"), ("O", "q = 4")].iter().enumerate()
+    {
+        let named = format!("type {kind}, at {row} 0 0");
+        let found = texts.iter().any(|text| text.contains(&named) && text.contains(charge));
+        assert!(found, "{named}: {texts:?}");
+    }
+    let [numbers] = between(&page, "data-numbers=\"", "\"")[..] else { panic!("one image") };
+    let (numbers, width) = (unpacked(numbers), 40);
+    let mut numbers: Vec<u8> = numbers;
+    for at in width..numbers.len() {
+        numbers[at] ^= numbers[at - width];
+    }
+    let row = || {
+        numbers[12 * width..13 * width]
+            .iter()
+            .map(|number| *number as usize)
+            .filter(|&number| number > 0)
+    };
+    let (left, right) = (row().next().expect("a sphere"), row().next_back().expect("a sphere"));
+    assert!(texts[left - 1].contains("type C, at 0 0 0"), "{left}");
+    assert!(texts[right - 1].contains("type O, at 2 0 0"), "{right}");
+    assert_eq!(numbers[0], 0);
+    picture(&folder, &["-o", "b.png"]);
+    let [file] = between(&page, "data:image/png;base64,", "\"")[..] else { panic!("a PNG file") };
+    let png = unpacked(file);
+    std::fs::write(folder.path("c.png"), &png).expect("a file");
+    let read = |name: &str| Image::read(folder.path(name)).expect("an image");
+    assert!(read("b.png") == read("c.png"));
+}
+
+#[test]
+fn pages_turn_their_images() {
+    let folder = folder();
+    picture(&folder, &["--turntable", "5", "-o", "a.html"]);
+    let page = text(&folder.read("a.html"));
+    assert_eq!(between(&page, "data:image/jpeg;base64,", "\"").len(), 5);
+    assert!(page.contains("max=\"4\"") && page.contains("TURNS = true"));
+    for (args, word) in
+        [("--layers id", "--layers"), ("--skip-existing", "--skip"), ("--fps 3", "--fps")]
+    {
+        let line = format!("render a.xyz -o b.html {args}");
+        let output = folder.run(&line.split(' ').collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(2), "{line}");
+        assert!(String::from_utf8_lossy(&output.stderr).contains(word), "{line}");
     }
 }

@@ -114,5 +114,9 @@ impl RenderArgs {
 
 /// Help of the option that names the output image or page.
 fn page_help() -> String {
-    format!("{}; .svg and .pdf hold the image with annotations as vectors and text", picture_help())
+    format!(
+        "{}; .svg and .pdf hold the image with annotations as vectors and text; .html is a \
+         page that names particles, and turns or plays a sequence",
+        picture_help()
+    )
 }

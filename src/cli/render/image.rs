@@ -1,5 +1,6 @@
 //! One image: rendered, denoised, drawn over and written.
 
+use super::album::Album;
 use super::appearance::{self, draw_annotations, write_bar};
 use super::checkpoint::resume::Resumed;
 use super::checkpoint::writer::CheckpointWriter;
@@ -19,7 +20,6 @@ use spherule_render::film::Film;
 use spherule_render::overlay::{Canvas, Matte};
 use spherule_render::render::{End, Judge, Options, Render, RenderError, ResumableRender};
 use spherule_render::scene::Scene;
-use spherule_render::video::Video;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -40,8 +40,8 @@ struct Traced {
 pub(super) struct Session<'a> {
     pub(super) notices: Notices,
     pub(super) writer: Option<&'a CheckpointWriter>,
-    /// The video, unless each image has its own file.
-    pub(super) video: Option<Video>,
+    /// The file of all images, unless each has its own.
+    pub(super) album: Option<Album>,
     /// The pace, if the images are a sequence.
     pub(super) pace: Option<Pace>,
 }
@@ -52,8 +52,10 @@ pub(super) fn render_image(
     writer: Option<&CheckpointWriter>,
     resumed: Option<Resumed>,
 ) -> Result<ExitCode, Failure> {
-    let mut session = Session { writer, ..Session::default() };
-    render_placed(setup, PlacedScene::load(setup, None)?, &mut session, resumed)
+    let mut session = Session { writer, album: Album::begin(setup)?, ..Session::default() };
+    let code = render_placed(setup, PlacedScene::load(setup, None)?, &mut session, resumed)?;
+    session.album.map_or(Ok(()), |album| album.finish(setup))?;
+    Ok(code)
 }
 
 /// Renders the image of a scene, unless it exists and is skipped.
@@ -91,7 +93,7 @@ fn finish_image(
     // A signal while the image is written ends a sequence, too. If something must be saved or removed, the
     // next image does so: it is interrupted at once. But no input is awaited that may never come.
     let stream = setup.common.as_ref().is_some_and(|common| !common.frames_all);
-    let saves = !stream && (session.writer.is_some() || session.video.is_some());
+    let saves = !stream && (session.writer.is_some() || session.album.is_some());
     let goes_on = saves && setup.place.is_some_and(|place| !place.last);
     let signal = if goes_on { traced.signal } else { traced.signal.or(signals::release()) };
     finished?;
@@ -139,9 +141,8 @@ fn write(
     let options = metadata::write_options(setup, prepared, render, judged);
     let mut channels = layers::channels(setup, prepared, render)?;
     channels.extend(matte.map(|matte| layers::alpha(&matte, setup.format)));
-    if let Some(video) = &mut session.video {
-        let added = video.add(&render.image, &options);
-        added.map_err(|error| Failure::video(&setup.output, None, error))?;
+    if let Some(album) = &mut session.album {
+        album.add(setup, prepared, &render.image, &channels, &options)?;
     } else {
         let file = render.image.encode(setup.format, &channels, &options)?;
         write_file(&setup.output, &page::file(setup, prepared, file, &options)?)?;

@@ -13,7 +13,7 @@ use crate::cli::picture_file;
 use crate::cli::source::Source;
 use spherule_render::World;
 use spherule_render::bvh::builders::Builder;
-use spherule_render::compose::{self, Content, Staged, Subject, Value};
+use spherule_render::compose::{self, Content, Labels, Staged, Subject, Value};
 use spherule_render::denoise::{self, Asked, Choice};
 use spherule_render::film::Region;
 use spherule_render::prepared::{self, PreparedScene};
@@ -57,6 +57,9 @@ pub(super) struct Prepared {
     pub(super) denoise: Option<Choice>,
     /// Warnings about the input.
     pub(super) warnings: Vec<String>,
+    /// Types and columns of the spheres, if a figure tells them, and half the diagonal of the scene's bounding box.
+    pub(super) labels: Labels,
+    pub(super) extent: f64,
     /// Reason why the image shows no sphere, if it shows none.
     pub(super) empty: Option<String>,
     /// The device that follows paths.
@@ -122,6 +125,8 @@ pub(in crate::cli) struct PlacedScene {
     pub(super) denoise: Option<Choice>,
     /// The world, if the scene is a prepared one.
     pub(super) stored: Option<Box<PreparedScene>>,
+    /// Types and columns of the spheres, if a figure tells them.
+    labels: Labels,
     /// Options without effect on the scene.
     notes: Vec<String>,
     load: Duration,
@@ -145,7 +150,7 @@ impl PlacedScene {
         compose::place(&setup.request, &mut staged, shared, angle)
             .map_err(|fault| setup.refuse(fault))?;
         let notes = notes::of_staged(setup, &staged);
-        let Staged { mut scene, legend, orientation, first_frame, .. } = staged;
+        let Staged { mut scene, legend, orientation, first_frame, labels, .. } = staged;
         let region = setup.region(&scene.settings)?;
         if setup.part.is_none() {
             picture_file::check_size("render", region, setup.format)?;
@@ -156,7 +161,18 @@ impl PlacedScene {
         let asked = setup.checkpoints.file().is_some() || setup.is_identified();
         let identity = asked.then(|| Identity::of(&scene));
         let stored = None;
-        Ok(Self { scene, legend, orientation, region, identity, denoise, stored, notes, load })
+        Ok(Self {
+            scene,
+            legend,
+            orientation,
+            region,
+            identity,
+            denoise,
+            stored,
+            labels,
+            notes,
+            load,
+        })
     }
 
     /// Opens a prepared scene, and applies the setup's settings.
@@ -183,6 +199,7 @@ impl PlacedScene {
             identity,
             denoise,
             stored,
+            labels: Labels::default(),
             notes: Vec::new(),
             load,
         })
@@ -191,7 +208,8 @@ impl PlacedScene {
     /// Builds the world, unless its estimated memory exceeds the limit.
     pub(super) fn build(self, setup: &RenderSetup) -> Result<Prepared, Failure> {
         let Self { mut scene, legend, orientation, region, identity, denoise, stored, .. } = self;
-        let (mut notes, load) = (self.notes, self.load);
+        let (mut notes, load, labels) = (self.notes, self.load, self.labels);
+        let extent = extent(&scene);
         let image_part = image_part(setup, region, &scene)?;
         let estimate = Estimate::new(&scene, region, setup, denoise.is_some())
             .of_tiles(image_part.tiles.len())
@@ -240,6 +258,8 @@ impl PlacedScene {
             identity,
             denoise,
             warnings,
+            labels,
+            extent,
             empty,
             device,
         })
@@ -341,6 +361,12 @@ fn choose(
 fn asked(setup: &RenderSetup) -> Asked {
     let (part, spp) = (setup.part.is_some(), setup.picture.settings.spp().is_some());
     Asked { part, spp, first_frame: None }
+}
+
+/// Half the diagonal of the bounding box of all spheres, ellipsoids and cones.
+pub(in crate::cli) fn extent(scene: &Scene) -> f64 {
+    let extent = scene.bounds().map_or(0.0, |[low, high]| (high - low).length() / 2.0);
+    if extent.is_finite() && extent > 0.0 { extent } else { 1.0 }
 }
 
 /// Returns the number of samples of a region.

@@ -14,7 +14,7 @@ use crate::cli::options::sequences::SequenceArgs;
 use crate::cli::options::slices::SliceArgs;
 use crate::cli::options::style::StyleArgs;
 use crate::cli::options::views::ViewArgs;
-use crate::cli::picture_file;
+use crate::cli::picture_file::{self, AlbumKind};
 use crate::cli::source::Source;
 use crate::cli::threads;
 use spherule_render::World;
@@ -27,8 +27,10 @@ use spherule_render::scene::particles::{ParticleStyle, TypeStyle};
 use spherule_render::scene::{Background, Preset, Settings};
 use spherule_render::split::{Part, Split};
 use spherule_render::trace::Tracer;
-use spherule_render::video::Container;
 use std::path::PathBuf;
+
+/// Maximum number of values in columns that are read to be told: 20 columns of 200 000 particles.
+pub(in crate::cli) const VALUES: usize = 4_000_000;
 
 /// Place of an image in a sequence.
 #[derive(Clone, Copy, Debug)]
@@ -79,8 +81,8 @@ pub(in crate::cli) struct RenderSetup<'a> {
     pub(in crate::cli) place: Option<Place>,
     /// The part of the sequence that this process renders, if not all.
     pub(in crate::cli) deal: Option<Part>,
-    /// Container format of the video, if there is one.
-    pub(in crate::cli) video: Option<Container>,
+    /// Kind of the file of all images, if there is one.
+    pub(in crate::cli) album: Option<AlbumKind>,
     /// The part of the image that this process renders, if not all.
     pub(in crate::cli) part: Option<Part>,
     pub(in crate::cli) split: Option<Split>,
@@ -91,34 +93,20 @@ pub(in crate::cli) struct RenderSetup<'a> {
 }
 
 /// Suffixes of pages and videos.
-const OTHERS: [&str; 6] = ["pdf", "svg", "mp4", "mov", "webm", "gif"];
+const OTHERS: [&str; 7] = ["pdf", "svg", "html", "mp4", "mov", "webm", "gif"];
 
 impl<'a> RenderSetup<'a> {
     /// Creates the setup from the arguments.
     pub(in crate::cli) fn new(args: &'a RenderArgs) -> Result<Self, Failure> {
         let seed = args.picture.settings.seed().unwrap_or(0);
-        // An explicit format applies to images, whatever their names.
-        let video =
-            Container::of_suffix(&args.output).filter(|_| args.encoding.output_format.is_none());
-        if video.is_some() {
-            check_film(args)?;
-        } else if args.sequence.fps.is_some() {
-            let message = "--fps applies only to videos; use an --output that ends in .mp4, .mov, .webm or .gif";
-            return Err(Failure::usage("render", message));
-        }
+        let album = album(args)?;
         let page = graphics::Format::of_suffix(&args.output)
             .filter(|page| *page != graphics::Format::Png)
             .filter(|_| args.encoding.output_format.is_none());
         if page.is_some() {
             check_page(args)?;
         }
-        // Images of a video have 8 bits, as PPM files do.
-        let format = match video {
-            Some(_) => Format::Ppm,
-            None if page.is_some() => Format::Png,
-            None => picture_file::format(&args.output, args.encoding.output_format)
-                .map_err(|error| error.or_suffixes(&OTHERS))?,
-        };
+        let format = format(args, album, page)?;
         if args.sequence.skip_existing && format == Format::Pfm {
             let message = "--skip-existing needs metadata, which PFM files cannot store; use an --output \
                            that ends in .png, .ppm or .exr";
@@ -166,8 +154,11 @@ impl<'a> RenderSetup<'a> {
                 [args.views.lens().columns(), args.annotations.request(None).columns()].concat();
         }
         Ok(Self {
-            source: with_columns(source, &looks)?,
-            request: request(args, looks, part.is_some())?,
+            source: with_columns(source, &looks, album)?,
+            request: Request {
+                keeps_labels: album == Some(AlbumKind::Figure),
+                ..request(args, looks, part.is_some())?
+            },
             particles: &args.particles,
             looks: &args.looks,
             color_bar: args.looks.color_bar.as_ref(),
@@ -187,7 +178,7 @@ impl<'a> RenderSetup<'a> {
             sequence: args.sequence,
             place: None,
             deal,
-            video,
+            album,
             part,
             split: args.part.split,
             speed: &args.speed,
@@ -246,7 +237,7 @@ impl<'a> RenderSetup<'a> {
 
     /// Returns whether the image's metadata identifies the scene.
     pub(in crate::cli) fn is_identified(&self) -> bool {
-        self.video.is_none() && (self.is_of_sequence() || self.sequence.skip_existing)
+        self.album.is_none() && (self.is_of_sequence() || self.sequence.skip_existing)
     }
 
     /// Creates the thread pool.
@@ -285,6 +276,41 @@ impl<'a> RenderSetup<'a> {
     }
 }
 
+/// Returns the kind of the file of all images, if there is one.
+fn album(args: &RenderArgs) -> Result<Option<AlbumKind>, Failure> {
+    // An explicit format applies to images, whatever their names.
+    let album =
+        AlbumKind::of_suffix(&args.output).filter(|_| args.encoding.output_format.is_none());
+    if let Some(album) = album {
+        check_album(args, album)?;
+    }
+    if args.sequence.fps.is_some() && !matches!(album, Some(AlbumKind::Video(_))) {
+        let message =
+            "--fps applies only to videos; use an --output that ends in .mp4, .mov, .webm or .gif";
+        return Err(Failure::usage("render", message));
+    }
+    Ok(album)
+}
+
+/// Returns the format of the image, or of each image in an album or on a page.
+fn format(
+    args: &RenderArgs,
+    album: Option<AlbumKind>,
+    page: Option<graphics::Format>,
+) -> Result<Format, Failure> {
+    let transparent = args.style.background() == Some(Background::Transparent);
+    Ok(match album {
+        // Images of a video have 8 bits, as PPM files do.
+        Some(AlbumKind::Video(_)) => Format::Ppm,
+        // Many images are small files, with what their format can store.
+        Some(AlbumKind::Figure) if args.is_sequence() && !transparent => Format::Jpeg,
+        Some(AlbumKind::Figure) => Format::Png,
+        None if page.is_some() => Format::Png,
+        None => picture_file::format(&args.output, args.encoding.output_format)
+            .map_err(|error| error.or_suffixes(&OTHERS))?,
+    })
+}
+
 /// Returns what the options ask of the scene, with the resolution, since sizes depend on it; of a part of an image, all
 /// settings of its display, too, since the image is written elsewhere.
 fn request(args: &RenderArgs, style: ParticleStyle, part: bool) -> Result<Request, Failure> {
@@ -320,11 +346,16 @@ fn request(args: &RenderArgs, style: ParticleStyle, part: bool) -> Result<Reques
     }
 }
 
-/// Returns the source, with the columns that colors and selections need; an error if it has no particles.
-fn with_columns(source: Source, looks: &ParticleStyle) -> Result<Source, Failure> {
+/// Returns the source, with the columns that colors, selections and figures need; an error if it has no particles.
+fn with_columns(
+    source: Source,
+    looks: &ParticleStyle,
+    album: Option<AlbumKind>,
+) -> Result<Source, Failure> {
     match source {
         Source::Particles(path, mut options) => {
             options.columns.wanted.extend(looks.columns());
+            options.columns.rest = (album == Some(AlbumKind::Figure)).then_some(VALUES);
             options.bonds = looks.bond_source();
             let element = |style: &TypeStyle| Some((style.name.clone(), style.element?));
             options.elements = looks.types.iter().filter_map(element).collect();
@@ -367,10 +398,15 @@ fn check_page(args: &RenderArgs) -> Result<(), Failure> {
     Err(Failure::usage("render", format!("SVG and PDF files cannot store {what}")))
 }
 
-/// Rejects options that do not apply to videos.
-fn check_film(args: &RenderArgs) -> Result<(), Failure> {
-    let numbered = "write numbered images with -o NAME-%04d.png, and encode the video from them";
-    let what = if !args.is_sequence() {
+/// Rejects options that do not apply to files of all images.
+fn check_album(args: &RenderArgs, album: AlbumKind) -> Result<(), Failure> {
+    let is_video = album != AlbumKind::Figure;
+    let instead = if is_video {
+        "write numbered images with -o NAME-%04d.png, and encode the video from them"
+    } else {
+        "use an --output that ends in .png"
+    };
+    let what = if is_video && !args.is_sequence() {
         let message = "a video needs a sequence of images; add --frame all or --turntable N, or use an \
                        --output that ends in .png";
         return Err(Failure::usage("render", message));
@@ -384,12 +420,12 @@ fn check_film(args: &RenderArgs) -> Result<(), Failure> {
         "--part"
     } else if args.sequence.skip_existing {
         "--skip-existing"
-    } else if args.style.background() == Some(Background::Transparent) {
+    } else if is_video && args.style.background() == Some(Background::Transparent) {
         "a transparent background"
     } else {
         return Ok(());
     };
-    Err(Failure::usage("render", format!("a video cannot store {what}; {numbered}")))
+    Err(Failure::usage("render", format!("{} cannot store {what}; {instead}", album.name())))
 }
 
 /// Rejects a transparent background for formats without alpha.

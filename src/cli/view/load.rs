@@ -2,12 +2,11 @@
 //! world.
 
 use super::content::Content;
-use super::digits;
 use super::loading::{Progress, Step};
 use super::viewer::Facts;
 use crate::cli::devices::Attached;
 use crate::cli::failure::Failure;
-use crate::cli::render::{RenderSetup, check_legend, frame_number};
+use crate::cli::render::{RenderSetup, VALUES, check_legend, extent, frame_number};
 use crate::cli::source::Source;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -25,9 +24,6 @@ use std::fs::Metadata;
 use std::path::Path;
 use std::sync::{Arc, RwLock};
 use std::time::SystemTime;
-
-/// Maximum number of values in columns that are read in advance: 20 columns of 200 000 particles.
-const VALUES: usize = 4_000_000;
 
 /// Maximum length in bytes of a file whose frames are counted at once.
 const SHORT: u64 = 1 << 26;
@@ -293,7 +289,7 @@ impl Loader {
             title: setup.source.title(&scene).into_owned(),
             spheres: count,
             types: labels.kinds.table.iter().map(|kind| kind.name.clone()).collect(),
-            size: size(&scene),
+            size: extent(&scene),
             framed,
             lit_from: request.lit_from.clone().unwrap_or_else(|| scene.camera.clone()),
             look: scene.look,
@@ -399,18 +395,6 @@ fn sketch(spheres: &Spheres) -> Spheres {
     some
 }
 
-/// Values of the file's columns for a sphere.
-pub(super) fn columns(labels: &Labels, row: usize) -> impl Iterator<Item = String> {
-    let numbers = labels.numbers.iter().filter(|column| column.name != "id");
-    let numbers = numbers.filter_map(move |column| {
-        let value = *column.values.get(row)?;
-        let text = digits::value(value, digits::range(&column.values));
-        Some(format!("{} = {text}", column.name))
-    });
-    let texts = labels.texts.iter().filter(move |column| row < column.codes.len());
-    numbers.chain(texts.map(move |column| format!("{} = {}", column.name, column.text(row))))
-}
-
 /// Returns the style of the command line, without hidden particles, and with the colors that are chosen.
 fn restyled(
     setup: &RenderSetup,
@@ -459,12 +443,6 @@ fn count(path: &Path, options: &ReadOptions, asked: bool) -> Option<u64> {
     }
     let short = path.metadata().is_ok_and(|data| data.is_file() && (asked || data.len() < SHORT));
     short.then(|| count_frames(path, options).ok()).flatten()
-}
-
-/// Half the diagonal of the bounding box of all spheres, ellipsoids and cones.
-fn size(scene: &Scene) -> f64 {
-    let size = scene.bounds().map_or(0.0, |[low, high]| (high - low).length() / 2.0);
-    if size.is_finite() && size > 0.0 { size } else { 1.0 }
 }
 
 #[cfg(test)]

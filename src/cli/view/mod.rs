@@ -14,7 +14,6 @@ mod checkerboard;
 mod client;
 mod commands;
 mod content;
-mod digits;
 mod events;
 mod frame_rate;
 mod headless;

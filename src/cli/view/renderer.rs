@@ -1,10 +1,9 @@
 //! Rendering of the viewer's images, and picking.
 
 use super::camera_control::CameraControl;
-use super::digits;
 use super::events::Picked;
 use super::image::{OverlaidImage, Picture, Quality, RenderRequest};
-use super::load::{LoadedScene, columns};
+use super::load::LoadedScene;
 use super::overlay::OverlayCache;
 use super::tonemap::ToneMapper;
 use crate::cli::failure::Failure;
@@ -14,6 +13,7 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use spherule_render::World;
 use spherule_render::bvh::builders::Builder;
+use spherule_render::compose::Descriptions;
 use spherule_render::denoise::{Choice, Denoised, Denoiser, Judged};
 use spherule_render::film::Region;
 use spherule_render::image::Image;
@@ -245,15 +245,7 @@ impl Renderer {
         let id = labels.id(row);
         let kind = labels.kind(row).map(str::to_owned);
         let extent = self.stage.facts.size;
-        let [a, b, c] = center.to_array().map(|value| digits::length(value, extent));
-        let length = digits::value(radius, extent);
-        let named = kind.as_ref().map_or(String::new(), |kind| format!("type {kind}, "));
-        let number = id.unwrap_or(row as f64);
-        let mut text = format!("sphere {number}: {named}at {a} {b} {c}, radius {length}");
-        for column in columns(labels, row) {
-            text += ", ";
-            text += &column;
-        }
+        let text = Descriptions::new(labels, extent).text(row, center, radius);
         let place = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
         let size = DVec2::new(f64::from(settings.width), f64::from(settings.height));
         let offset = (place - size / 2.0) / size.y;

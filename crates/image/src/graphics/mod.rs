@@ -5,6 +5,7 @@
 //! system may have none.
 
 mod font;
+mod html;
 mod marks;
 mod page;
 mod pdf;
@@ -12,6 +13,7 @@ mod raster;
 mod svg;
 
 pub use font::{CAP_HEIGHT, X_HEIGHT, text_width};
+pub use html::Figure;
 pub use marks::{marked_width, unmarked};
 pub use page::{Format, Page, PageError};
 pub use svg::base64;

@@ -97,7 +97,7 @@ fn hex([red, green, blue]: [u8; 3]) -> String {
 }
 
 /// Returns text for XML, without the characters that XML cannot hold.
-fn escaped(text: &str) -> String {
+pub(super) fn escaped(text: &str) -> String {
     let escape = |letter: char| match letter {
         '<' => "&lt;".to_owned(),
         '>' => "&gt;".to_owned(),

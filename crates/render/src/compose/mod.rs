@@ -13,6 +13,8 @@
 
 mod annotations;
 mod camera;
+mod descriptions;
+mod digits;
 mod marks;
 mod sections;
 mod survey;
@@ -23,6 +25,7 @@ pub use self::camera::{
     CameraRequest, Focus, LensRequest, LookAt, choose, corners, frame, leave_room, light,
     light_ahead, place, vertical, zoom,
 };
+pub use self::descriptions::Descriptions;
 pub use self::marks::MeasureRequest;
 pub use self::sections::{Sections, change};
 pub use self::survey::Survey;

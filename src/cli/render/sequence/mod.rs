@@ -10,6 +10,7 @@ mod plan;
 use self::frame_reader::FrameReader;
 use self::numbered_names::numbered;
 use self::plan::{Frames, Plan, Shot, stream_name};
+use super::album::Album;
 use super::checkpoint::resume::Resumed;
 use super::checkpoint::writer::CheckpointWriter;
 use super::image::{Session, render_placed};
@@ -26,7 +27,6 @@ use crate::cli::source::Source;
 use spherule_render::compose::Survey;
 use spherule_render::scene::particles::{Particles, ReadOptions, TrajectoryReader};
 use spherule_render::split::Part;
-use spherule_render::video::Video;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -59,7 +59,7 @@ pub(super) fn run(
     let plan = Plan::new(Some(frames), setup.views.turntable())?;
     let mut setup = setup.clone();
     setup.request.style.allow_empty = true;
-    let video = check_outputs(&setup, &plan, files)?;
+    let album = check_outputs(&setup, &plan, files)?;
     let mut reader = FrameReader::open(path, &options)?;
     let survey = survey_frames(&setup, &plan, path, &options, &mut reader)?;
     survey.check(path, &setup.request.style)?;
@@ -67,7 +67,7 @@ pub(super) fn run(
     survey.fix_colors(&mut setup.request.style);
     survey.fix_arrows(setup.request.style.arrows.as_mut());
     let pace = Some(Pace::new(own_count(&setup, &plan)));
-    let session = Session { video, pace, ..session };
+    let session = Session { album, pace, ..session };
     Sequence { setup, plan, files, session, resumed }.of_frames(path, &options, reader, survey)
 }
 
@@ -88,24 +88,22 @@ fn run_turntable(
         return Err(Failure::usage("render", message));
     }
     let plan = Plan::new(None, setup.views.turntable())?;
-    let video = check_outputs(setup, &plan, files)?;
+    let album = check_outputs(setup, &plan, files)?;
     let pace = Some(Pace::new(own_count(setup, &plan)));
-    let session = Session { video, pace, ..session };
+    let session = Session { album, pace, ..session };
     Sequence { setup: setup.clone(), plan, files, session, resumed }.of_turn()
 }
 
 /// Checks that all images of this process can be written without replacing other files of the command, as far
-/// as their number is known; returns the video, if there is one.
+/// as their number is known; returns the file of all images, if there is one.
 fn check_outputs(
     setup: &RenderSetup,
     plan: &Plan,
     files: &Files,
-) -> Result<Option<Video>, Failure> {
-    if let Some(container) = setup.video {
+) -> Result<Option<Album>, Failure> {
+    if setup.album.is_some() {
         files.check_output("--output", &setup.output)?;
-        let (path, fps) = (&setup.output, setup.sequence.fps);
-        let video = Video::new(path, container, fps);
-        return video.map(Some).map_err(|error| Failure::video(path, fps, error));
+        return Album::begin(setup);
     }
     let known = (0..plan.count().unwrap_or(1)).filter(|&index| is_assigned(setup, index));
     let mut files = files.clone();
@@ -325,7 +323,7 @@ impl Sequence<'_> {
         let Shot { frame, turn, number } = *shot;
         let place = Some(Place { index, last: self.is_last(index) });
         let mut setup = RenderSetup { turn, frame, common, place, ..self.setup.clone() };
-        if setup.video.is_none() {
+        if setup.album.is_none() {
             setup.output = numbered(&self.setup.output, number, self.plan.digits());
             picture_file::check(&setup.output)?;
             if self.plan.count().is_none() {
@@ -344,9 +342,9 @@ impl Sequence<'_> {
         Ok(code)
     }
 
-    /// Completes the video, and prints the final messages.
+    /// Completes the file of all images, and prints the final messages.
     fn finish(self) -> Result<ExitCode, Failure> {
-        let Session { notices, video, .. } = self.session;
+        let Session { notices, album, .. } = self.session;
         notices.summarize(self.plan.noun());
         if notices.pictures() == 0 {
             let which = self.setup.deal.map_or_else(String::new, |part| format!(" of part {part}"));
@@ -358,13 +356,7 @@ impl Sequence<'_> {
                 "{kept} of {pictures} images already existed and were skipped"
             ));
         }
-        if let Some(video) = video {
-            let summary =
-                video.finish().map_err(|error| Failure::video(&self.setup.output, None, error))?;
-            if !self.setup.report.quiet {
-                output::print(summary);
-            }
-        }
+        album.map_or(Ok(()), |album| album.finish(&self.setup))?;
         Ok(ExitCode::SUCCESS)
     }
 }

@@ -1,0 +1,110 @@
+//! Albums, files of all images of a render: videos, and figures, pages of HTML that are turned or played.
+
+use super::prepare::Prepared;
+use super::setup::RenderSetup;
+use crate::cli::failure::Failure;
+use crate::cli::output;
+use crate::cli::picture_file::AlbumKind;
+use crate::cli::write_file::{check_destination, write_file};
+use spherule_render::compose::Descriptions;
+use spherule_render::graphics::Figure;
+use spherule_render::image::{Channel, Image, WriteOptions};
+use spherule_render::layers::{Layer, layers};
+use spherule_render::render::{Options, RenderError};
+use spherule_render::scene::Settings;
+use spherule_render::video::Video;
+use std::collections::HashMap;
+
+/// A file of all images, while they are added.
+pub(super) enum Album {
+    Video(Box<Video>),
+    /// A page, once it has an image.
+    Figure(Option<Figure>),
+}
+
+impl Album {
+    /// Begins the file of a render, if all its images are in one.
+    pub(super) fn begin(setup: &RenderSetup) -> Result<Option<Self>, Failure> {
+        let (path, fps) = (&setup.output, setup.sequence.fps);
+        match setup.album {
+            None => Ok(None),
+            Some(AlbumKind::Figure) => check_destination(path).map(|()| Some(Self::Figure(None))),
+            Some(AlbumKind::Video(container)) => match Video::new(path, container, fps) {
+                Ok(video) => Ok(Some(Self::Video(Box::new(video)))),
+                Err(error) => Err(Failure::video(path, fps, error)),
+            },
+        }
+    }
+
+    /// Adds an image.
+    pub(super) fn add(
+        &mut self,
+        setup: &RenderSetup,
+        prepared: &Prepared,
+        image: &Image,
+        channels: &[Channel],
+        options: &WriteOptions,
+    ) -> Result<(), Failure> {
+        let figure = match self {
+            Self::Video(video) => {
+                let added = video.add(image, options);
+                return added.map_err(|error| Failure::video(&setup.output, None, error));
+            }
+            Self::Figure(figure) => figure,
+        };
+        let is_turn = setup.views.turntable().is_some();
+        let figure = figure.get_or_insert_with(|| Figure::new(&prepared.title, is_turn));
+        let file = image.encode(setup.format, channels, options)?;
+        let numbers = numbers(setup, prepared, figure)?;
+        figure.add(setup.format, file, (image.width, image.height), &numbers);
+        Ok(())
+    }
+
+    /// Completes the file, and returns a message about it; `None` if it has no image.
+    pub(super) fn finish(self, setup: &RenderSetup) -> Result<(), Failure> {
+        let summary = match self {
+            Self::Video(video) => {
+                video.finish().map_err(|error| Failure::video(&setup.output, None, error))?
+            }
+            Self::Figure(None) => return Ok(()),
+            Self::Figure(Some(figure)) => {
+                let page = figure.file();
+                write_file(&setup.output, page.as_bytes())?;
+                let megabytes = page.len() as f64 / 1e6;
+                let (path, count) = (setup.output.display(), figure.len());
+                let images = if count == 1 { "image" } else { "images" };
+                format!("{path}: page with {count} {images}, {megabytes:.1} MB")
+            }
+        };
+        if !setup.report.quiet {
+            output::print(summary);
+        }
+        Ok(())
+    }
+}
+
+/// Returns the number of the text of each pixel: that of the sphere in its middle.
+fn numbers(
+    setup: &RenderSetup,
+    prepared: &Prepared,
+    figure: &mut Figure,
+) -> Result<Vec<u32>, RenderError> {
+    let settings = Settings { spp: 1, ..prepared.scene.settings.clone() };
+    let options =
+        Options { tracer: setup.tracer, region: Some(prepared.region), ..Options::default() };
+    let world = &prepared.world;
+    let found = layers(world, &settings, &options, &[Layer::Id])?;
+    let places: HashMap<u32, usize> =
+        world.spheres.id.iter().enumerate().map(|(place, &id)| (id, place)).collect();
+    let descriptions = Descriptions::new(&prepared.labels, prepared.extent);
+    let mut known: HashMap<u32, u32> = HashMap::new();
+    let mut number = |id: u32| {
+        let Some(&place) = places.get(&id) else { return 0 };
+        *known.entry(id).or_insert_with(|| {
+            let (center, radius) = world.spheres.exact(place);
+            let (scale, shift) = (world.transform.scale, world.transform.shift);
+            figure.number(&descriptions.text(id as usize, center / scale + shift, radius / scale))
+        })
+    };
+    Ok(found.pixels.iter().map(|pixel| number(pixel.id)).collect())
+}
