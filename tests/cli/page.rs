@@ -297,6 +297,25 @@ fn motions_are_seen_at_last_and_told_ten_times_a_second() {
 }
 
 #[test]
+fn frames_of_long_files_are_counted_while_the_first_is_seen() {
+    let folder = Folder::new();
+    let comment = "x".repeat(1_000_000);
+    let frame = |x: u32| format!("2\n{comment}\nC 0 0 0\nC {x}.5 0 0\n");
+    let frames: String = (0..70).map(frame).collect();
+    folder.write("long.xyz", &frames);
+    let server = Server::start(&folder, &["long.xyz", "--radii", "0.4", "--spp", "1"]);
+    let mut page = server.page();
+    page.send("size 40x30");
+    page.until(|state| state["frames"] == 70);
+    for frame in [69, 3, 4, 70] {
+        page.send(&format!("frame {frame}"));
+        let last = frame.min(69);
+        page.until(|state| state["frame"] == last && state["busy"] == false);
+    }
+    page.until(|state| state["frames"] == 70);
+}
+
+#[test]
 fn bad_clients_cost_nothing() {
     let folder = Folder::new();
     let mut server = Server::start(&folder, &["--spp", "1"]);

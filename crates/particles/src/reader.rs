@@ -149,6 +149,11 @@ impl Frames {
         Ok(index)
     }
 
+    /// Returns the number of frames that were read or skipped.
+    pub(crate) fn passed(&self) -> u64 {
+        self.passed
+    }
+
     /// Returns whether another frame seems to follow.
     ///
     /// # Errors

@@ -304,6 +304,7 @@ impl Host {
     fn receive(&mut self, message: Message) {
         match message {
             Message::Loading(loading) => self.viewer.loading = Some(loading),
+            Message::Counted(frames) => self.viewer.facts.frames = Some(frames),
             Message::Loaded(Ok(stage)) => self.set(*stage),
             Message::Loaded(Err(failure)) => {
                 // The visible content is the last loaded one.

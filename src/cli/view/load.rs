@@ -14,15 +14,15 @@ use spherule_render::World;
 use spherule_render::compose::{self, CellRequest, Labels, Request, Staged, Subject, Value};
 use spherule_render::scene::particles::{
     ArrowSizes, Codes, Coloring, ColumnColors, FrameChoice, Kind, Kinds, Model, NumberColumn,
-    ParticleFrame, ParticleStyle, Particles, ReadOptions, ReadProgress, Role, Selection,
-    TrajectoryReader, count_frames,
+    ParticleFrame, ParticleStyle, Particles, ReadOptions, Role, Selection, TrajectoryReader,
+    count_frames,
 };
 use spherule_render::scene::{Pose, Rgb, Scene, Spheres};
 use spherule_render::world::framing;
 use std::collections::HashSet;
 use std::fs::Metadata;
 use std::path::Path;
-use std::sync::{Arc, RwLock};
+use std::sync::{Arc, OnceLock, RwLock};
 use std::time::SystemTime;
 
 /// Maximum length in bytes of a file whose frames are counted at once.
@@ -47,7 +47,6 @@ pub(super) struct Base {
     /// The scene file without its spheres; `None` for a particle file.
     scene: Option<Scene>,
     frame: Option<u64>,
-    frames: Option<u64>,
     /// True if missing columns can be read from the file.
     more_columns: bool,
 }
@@ -96,7 +95,6 @@ impl Base {
             !base.more_columns || content.color.iter().chain(wanted).all(known)
         };
         let enough = |base: &Self| base.frame == content.frame && has_color(base);
-        let frames = before.as_ref().and_then(|base| base.frames);
         if let Some(base) = before.filter(enough) {
             return Ok(base);
         }
@@ -119,9 +117,7 @@ impl Base {
         let select = ParticleStyle { select, model, ..ParticleStyle::default() };
         select.apply(path, &mut particles)?;
         compose::repeat(setup.request.cell, path, &mut particles)?;
-        options.progress = ReadProgress::default();
-        let frames = frames.or_else(|| count(path, &options, content.frame.is_some()));
-        Ok(Self { particles, scene: None, frame: content.frame, frames, more_columns })
+        Ok(Self { particles, scene: None, frame: content.frame, more_columns })
     }
 
     /// Converts a scene's spheres to particles whose types are materials.
@@ -137,7 +133,7 @@ impl Base {
         let kinds = Kinds { table, codes };
         let frame = ParticleFrame { kinds, ..ParticleFrame::default() };
         let particles = Particles { spheres, frame, ..Particles::default() };
-        Self { particles, scene: Some(scene), frame: None, frames: None, more_columns: false }
+        Self { particles, scene: Some(scene), frame: None, more_columns: false }
     }
 
     /// Returns the facts for the viewer, without those that depend on colors and materials.
@@ -149,7 +145,6 @@ impl Base {
         Facts {
             columns: own.chain(default).map(str::to_owned).collect(),
             frame: self.frame.unwrap_or(0),
-            frames: self.frames,
             cell: self.particles.frame.cell,
             unit: self.particles.frame.unit.symbol(),
             own_materials: self.scene.is_none()
@@ -239,9 +234,26 @@ pub(super) struct Loader {
     trajectory: TrajectoryReader,
     /// Sizes of the arrows of the first frame that had some: those of others compare with them.
     arrow_sizes: Option<ArrowSizes>,
+    /// Number of frames of the file, once it is known.
+    frames: Arc<OnceLock<u64>>,
+    counts: bool,
 }
 
 impl Loader {
+    /// Returns what counts the frames of the last content, unless that was returned before or they are known.
+    pub(super) fn count(&mut self) -> Option<impl FnOnce() -> Option<u64> + Send + use<>> {
+        let frames = Arc::clone(&self.frames);
+        let source = self.reading.as_ref().map(|reading| reading.source.clone());
+        let Some(Source::Particles(path, options)) = source else { return None };
+        if frames.get().is_some() || std::mem::replace(&mut self.counts, true) {
+            return None;
+        }
+        Some(move || {
+            let count = count_frames(&path, &options).ok()?;
+            Some(*frames.get_or_init(|| count))
+        })
+    }
+
     /// Reads the source if necessary, applies colors and materials, and builds the world.
     pub(super) fn load(
         &mut self,
@@ -263,6 +275,12 @@ impl Loader {
         let stamp = stamp(&setup.source);
         let read = Base::load(setup, content, self.base.take(), &mut self.trajectory, progress)?;
         let facts = read.facts(setup);
+        if self.frames.get().is_none()
+            && let Source::Particles(path, options) = &setup.source
+            && let Some(count) = count_at_once(path, options)
+        {
+            self.frames.get_or_init(|| count);
+        }
         let many = read.particles.spheres.len() > MANY;
         let (particles, scene) = if many {
             (read.particles, read.scene)
@@ -298,6 +316,7 @@ impl Loader {
             orientation,
             color_bar: scene.annotations.color_bar.is_some(),
             legend,
+            frames: self.frames.get().copied(),
             ..facts
         };
         progress.begin(Step::Building(count));
@@ -435,13 +454,12 @@ fn other_columns(particles: &Particles) -> impl Iterator<Item = &str> {
     own.filter(move |name| !roles.contains(name) && !USUAL.contains(name))
 }
 
-/// Number of frames of a file, if it is fast to count or other frames are requested. Standard input has one,
-/// because it can be read only once.
-fn count(path: &Path, options: &ReadOptions, asked: bool) -> Option<u64> {
+/// Number of frames of a file, if it is fast to count. Standard input has one, because it can be read only once.
+fn count_at_once(path: &Path, options: &ReadOptions) -> Option<u64> {
     if path.as_os_str() == "-" {
         return Some(1);
     }
-    let short = path.metadata().is_ok_and(|data| data.is_file() && (asked || data.len() < SHORT));
+    let short = path.metadata().is_ok_and(|data| data.is_file() && data.len() < SHORT);
     short.then(|| count_frames(path, options).ok()).flatten()
 }
 

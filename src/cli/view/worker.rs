@@ -22,6 +22,8 @@ use std::thread;
 pub(super) enum Message {
     /// Progress of loading.
     Loading(Loading),
+    /// The number of frames is known.
+    Counted(u64),
     /// New content is loaded.
     Loaded(Result<Box<LoadedScene>, Failure>),
     /// A request is done; `None` if it was cancelled, or another one is done in its place.
@@ -165,8 +167,14 @@ fn load(
             // Memory may not be sufficient for two large worlds.
             continue;
         }
+        let loaded = staged.is_ok();
         if !notify(Message::Loaded(staged)) {
             return;
+        }
+        // Long files take seconds, in which the first frame is seen.
+        if let Some(count) = loaded.then(|| loader.count()).flatten() {
+            let tell = notify.clone();
+            thread::spawn(move || count().is_some_and(|frames| tell(Message::Counted(frames))));
         }
     }
 }

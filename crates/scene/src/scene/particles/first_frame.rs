@@ -5,8 +5,8 @@
 //! the first frame of the file that has particles, whichever frames are drawn, and before any are selected.
 
 use super::{
-    ArrowSizes, ArrowStyle, Frames, Orientation, ParticleFrame, Particles, ReadOptions,
-    SharedNames, of_frame, of_frame_in, read_frame, read_frame_after,
+    ArrowSizes, ArrowStyle, Frames, OpenFile, Orientation, ParticleFrame, Particles, ReadOptions,
+    SharedNames, of_frame, of_frame_in, read_frame_after,
 };
 use crate::scene::FileError;
 use std::path::Path;
@@ -64,12 +64,13 @@ pub struct TrajectoryReader {
     /// Types and texts, in the order in which frames have them.
     names: SharedNames,
     first_frame: Option<FirstFrame>,
+    file: OpenFile,
 }
 
 impl TrajectoryReader {
     /// Creates a reader of frames that have these choices in common.
     pub fn of_first(first_frame: Option<FirstFrame>) -> Self {
-        Self { names: SharedNames::default(), first_frame }
+        Self { first_frame, ..Self::default() }
     }
 
     /// Returns the choices that the frames have in common, once they are known.
@@ -171,9 +172,9 @@ impl TrajectoryReader {
         options: &ReadOptions,
         arrows: Option<&ArrowStyle>,
     ) -> Result<(ParticleFrame, bool), FileError> {
-        let Self { names, first_frame } = self;
+        let Self { names, first_frame, file } = self;
         let (mut frame, has_several) = if first_frame.is_some() {
-            (read_frame(path, options)?, true)
+            (file.read(path, options)?, true)
         } else {
             let mut look = |mut first: ParticleFrame| {
                 names.intern(&mut first);

@@ -26,9 +26,9 @@ pub use select::{Fault, MoleculeCensus, Selection};
 pub use spheres::Particles;
 pub use spherule_particles::{
     AlignBy, BondRules, BondSource, Bonds, Cell, Codes, Columns, Element, Format, FrameChoice,
-    FrameCount, Frames, Kind, Kinds, LengthUnit, NumberColumn, ParticleFrame, Radii, ReadOptions,
-    ReadProgress, Role, Shapes, SharedNames, TextColumn, Trails, count_frames, read_frame,
-    read_frame_after,
+    FrameCount, Frames, Kind, Kinds, LengthUnit, NumberColumn, OpenFile, ParticleFrame, Radii,
+    ReadOptions, ReadProgress, Role, Shapes, SharedNames, TextColumn, Trails, count_frames,
+    read_frame, read_frame_after,
 };
 pub use style::{
     Applied, ArrowCentering, ArrowSizes, ArrowStyle, Arrows, Category, ColorEnd, ColorEnds,
