@@ -228,6 +228,10 @@ fn commands_change_the_view_and_bad_ones_are_refused() {
         "nonsense",
         "drag",
         "'",
+        "save x.png",
+        "window x.png",
+        "wait 2",
+        "quit",
     ] {
         page.send(line);
         assert!(!page.error().is_empty(), "{line}");
@@ -236,7 +240,6 @@ fn commands_change_the_view_and_bad_ones_are_refused() {
     page.send("set color-by nothing");
     page.until(|state| state["message"].as_str().is_some_and(|text| text.contains("nothing")));
     page.until(|state| state["options"]["color-by"].is_null());
-    page.send("save x.png");
     page.send("hover 20,15");
     page.send("set color-by q");
     page.until(|state| !state["legend"].is_null());
@@ -267,6 +270,16 @@ fn one_page_steers_and_others_look() {
     first.until(|state| state["pages"] == 1);
     first.send("size 52x30");
     first.image(|header| header["width"] == 52);
+}
+
+#[test]
+fn missing_files_are_told_before_an_address() {
+    let folder = Folder::new();
+    for name in ["missing.xyz", "missing.toml"] {
+        let output = folder.run(&["view", "--no-browser", name]);
+        assert!(!output.status.success() && output.stdout.is_empty(), "{output:?}");
+        assert!(String::from_utf8_lossy(&output.stderr).contains(name), "{output:?}");
+    }
 }
 
 #[test]

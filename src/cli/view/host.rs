@@ -229,6 +229,11 @@ impl Host {
             return self.download(number, suffix.trim());
         }
         let step = script::command(line)?;
+        if step.is_of_scripts() {
+            let name = line.split_whitespace().next().unwrap_or_default();
+            let instead = "a page has `download png`, and ends by being closed";
+            return Err(format!("`{name}` is a command of scripts alone; {instead}"));
+        }
         let looks = matches!(step, Step::Hover(_));
         if !looks && self.steering != Some(number) {
             return Err("another page steers".to_owned());

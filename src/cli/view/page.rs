@@ -10,7 +10,9 @@ use super::token::token;
 use crate::cli::failure::Failure;
 use crate::cli::output;
 use crate::cli::render::RenderSetup;
+use crate::cli::source::Source;
 use std::env;
+use std::fs::{File, Metadata};
 use std::io::ErrorKind;
 use std::net::{IpAddr, SocketAddr, TcpListener, ToSocketAddrs};
 use std::sync::Arc;
@@ -32,6 +34,7 @@ pub(super) fn open(
     args: &ViewerArgs,
     options: Options,
 ) -> Result<(), Failure> {
+    check(&setup.source)?;
     let name = args.address.as_deref().unwrap_or(LOOPBACK);
     let listener = listen(name, args.port.unwrap_or(0))?;
     let at = listener.local_addr().map_err(|error| Failure::View(format!("{name}: {error}")))?;
@@ -42,6 +45,17 @@ pub(super) fn open(
     let door = Arc::new(Door { token, address: name.to_owned() });
     thread::spawn(move || serve(&listener, &door, &sender));
     host.run(&inputs)
+}
+
+/// Returns an error if a file is missing or cannot be opened, before an address is told at which nothing would be seen.
+fn check(source: &Source) -> Result<(), Failure> {
+    let (Source::Toml(path) | Source::Particles(path, _)) = source else { return Ok(()) };
+    // Pipes are opened once.
+    let is_there = |data: Metadata| !data.is_file() || File::open(path).is_ok();
+    if path.as_os_str() == "-" || path.metadata().is_ok_and(is_there) {
+        return Ok(());
+    }
+    Ok(source.load().map(drop)?)
 }
 
 fn listen(name: &str, port: u16) -> Result<TcpListener, Failure> {

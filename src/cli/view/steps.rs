@@ -17,6 +17,11 @@ const OF_IMAGES: [&str; 7] =
     ["spp", "sampler", "integrator", "depth", "exposure", "tone", "denoise"];
 
 impl Step {
+    /// Returns whether pages do not have it: they write no files of this machine, and nothing waits for them.
+    pub(super) fn is_of_scripts(&self) -> bool {
+        matches!(self, Self::Wait(_) | Self::Save(_) | Self::Window(_) | Self::Adapt | Self::Quit)
+    }
+
     /// Returns the steps that one of a whole gesture consists of.
     pub(super) fn parts(self) -> Vec<Self> {
         let press = |place, button, held| Self::Press { place, button, held };
