@@ -102,7 +102,7 @@ impl TrajectoryReader {
     ///
     /// # Errors
     ///
-    /// Those of [`read_frame`].
+    /// Those of [`read_frame`](super::read_frame).
     pub fn read_frame(
         &mut self,
         path: &Path,
