@@ -28,9 +28,9 @@ impl OpenFile {
     ///
     /// Those of [`read_frame`].
     pub fn read(&mut self, path: &Path, options: &ReadOptions) -> Result<ParticleFrame, FileError> {
-        let own = &options;
-        let alone = own.smooth == 0 && own.trail == 0 && own.align.is_none() && path.is_file();
-        let (FrameChoice::Index(index), true) = (own.frame, alone) else {
+        let alone =
+            options.smooth == 0 && options.trail == 0 && options.align.is_none() && path.is_file();
+        let (FrameChoice::Index(index), true) = (options.frame, alone) else {
             return read_frame(path, options);
         };
         let (stamp, key) =

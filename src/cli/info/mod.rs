@@ -247,7 +247,7 @@ impl CameraInfo {
             Projection::Perspective { .. } => "perspective",
             Projection::Orthographic { .. } => "orthographic",
         };
-        let eye = world.camera.eye / world.transform.scale + world.transform.shift;
+        let eye = world.transform.user_point(world.camera.eye);
         Self { projection, eye: eye.to_array(), lens: world.camera.has_lens() }
     }
 

@@ -60,7 +60,7 @@ impl Album {
         Ok(())
     }
 
-    /// Completes the file, and returns a message about it; `None` if it has no image.
+    /// Completes the file, and prints a message about it; a page without an image is not written.
     pub(super) fn finish(self, setup: &RenderSetup) -> Result<(), Failure> {
         let summary = match self {
             Self::Video(video) => {
@@ -94,17 +94,13 @@ fn numbers(
         Options { tracer: setup.tracer, region: Some(prepared.region), ..Options::default() };
     let world = &prepared.world;
     let found = layers(world, &settings, &options, &[Layer::Id])?;
-    let places: HashMap<u32, usize> =
-        world.spheres.id.iter().enumerate().map(|(place, &id)| (id, place)).collect();
     let descriptions = Descriptions::new(&prepared.labels, prepared.extent);
-    let mut known: HashMap<u32, u32> = HashMap::new();
-    let mut number = |id: u32| {
-        let Some(&place) = places.get(&id) else { return 0 };
-        *known.entry(id).or_insert_with(|| {
-            let (center, radius) = world.spheres.exact(place);
-            let (scale, shift) = (world.transform.scale, world.transform.shift);
-            figure.number(&descriptions.text(id as usize, center / scale + shift, radius / scale))
-        })
-    };
-    Ok(found.pixels.iter().map(|pixel| number(pixel.id)).collect())
+    let mut numbers: HashMap<u32, u32> = found.pixels.iter().map(|pixel| (pixel.id, 0)).collect();
+    for (row, id) in world.spheres.id.iter().enumerate() {
+        if let Some(number) = numbers.get_mut(id) {
+            let (center, radius) = world.sphere(row);
+            *number = figure.number(&descriptions.text(*id as usize, center, radius));
+        }
+    }
+    Ok(found.pixels.iter().map(|pixel| numbers[&pixel.id]).collect())
 }

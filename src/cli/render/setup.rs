@@ -93,7 +93,7 @@ pub(in crate::cli) struct RenderSetup<'a> {
 }
 
 /// Suffixes of pages and videos.
-const OTHERS: [&str; 7] = ["pdf", "svg", "html", "mp4", "mov", "webm", "gif"];
+const PAGES_AND_VIDEOS: [&str; 7] = ["pdf", "svg", "html", "mp4", "mov", "webm", "gif"];
 
 impl<'a> RenderSetup<'a> {
     /// Creates the setup from the arguments.
@@ -307,7 +307,7 @@ fn format(
         Some(AlbumKind::Figure) => Format::Png,
         None if page.is_some() => Format::Png,
         None => picture_file::format(&args.output, args.encoding.output_format)
-            .map_err(|error| error.or_suffixes(&OTHERS))?,
+            .map_err(|error| error.or_suffixes(&PAGES_AND_VIDEOS))?,
     })
 }
 

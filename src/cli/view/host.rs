@@ -94,7 +94,7 @@ pub(super) struct Host {
     /// The state that pages know.
     told: String,
     told_at: Instant,
-    /// Whether the last command moved the pointer or the camera.
+    /// True if the last command moved the pointer or the camera.
     moves: bool,
     /// Number of commands of the steering page, and what versions of the view follow, in their order.
     heard: u64,
@@ -461,12 +461,12 @@ impl Host {
     /// Returns whether the first image of a version may be rendered: the camera is then where it is when the page can show it.
     /// Images that wait for each other are older, and take the browser's time; on a long way, several are sent.
     fn is_due(&mut self) -> bool {
-        let passed = self.requested.elapsed();
-        let client = self.clients.iter().find(|(number, _)| self.steering == Some(*number));
-        let ready = client.is_none_or(|(_, client)| client.is_ready(passed >= INTERVAL));
         if self.rendering > 0 {
             return false;
         }
+        let passed = self.requested.elapsed();
+        let client = self.clients.iter().find(|(number, _)| self.steering == Some(*number));
+        let ready = client.is_none_or(|(_, client)| client.is_ready(passed >= INTERVAL));
         if ready || passed >= LONGEST {
             return true;
         }

@@ -263,10 +263,9 @@ impl Renderer {
             let there = row < scene.spheres.len();
             return there.then(|| (scene.spheres.center(row), scene.spheres.radius[row]));
         }
-        let World { spheres, transform, .. } = &self.stage.world;
-        let place = spheres.id.par_iter().position_any(|&id| id as usize == row)?;
-        let (center, radius) = spheres.exact(place);
-        Some((center / transform.scale + transform.shift, radius / transform.scale))
+        let world = &self.stage.world;
+        let place = world.spheres.id.par_iter().position_any(|&id| id as usize == row)?;
+        Some(world.sphere(place))
     }
 }
 

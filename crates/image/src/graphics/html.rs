@@ -19,7 +19,7 @@ const BYTES: usize = 4;
 #[derive(Clone, Debug, Default)]
 pub struct Figure {
     title: String,
-    /// Whether the last image precedes the first one, as in a turn.
+    /// True if the last image precedes the first one, as in a turn.
     is_turn: bool,
     /// Width and height of the images in pixels.
     size: (u32, u32),

@@ -140,7 +140,7 @@ impl PaperTracer {
             });
             let (origin, direction) = self.camera.rays([corner[0] + x, corner[1] + y], lens);
             let vector = |v: Vec3<f64>| DVec3::new(v.x, v.y, v.z);
-            let origin = vector(origin) / self.transform.scale + self.transform.shift;
+            let origin = self.transform.user_point(vector(origin));
             let ray = Ray { origin, direction: vector(direction) };
             sum += self.radiance(&ray, worker.plan.depth, worker);
         }

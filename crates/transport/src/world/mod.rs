@@ -169,6 +169,15 @@ pub enum WorldError {
 }
 
 impl World {
+    /// Returns center and radius of a sphere in the user's coordinates, by its row in [`World::spheres`].
+    ///
+    /// # Panics
+    /// There is no such row.
+    pub fn sphere(&self, row: usize) -> (glam::DVec3, f64) {
+        let (center, radius) = self.spheres.exact(row);
+        (self.transform.user_point(center), radius / self.transform.scale)
+    }
+
     /// Builds the world, with the tree builder that suits its settings.
     ///
     /// Spheres that vanish in single precision relative to the largest coordinate (a radius below about

@@ -88,6 +88,11 @@ impl Transform {
     pub fn length(&self, user: f64) -> f64 {
         user * self.scale
     }
+
+    /// Returns a point of the world in the user's coordinates.
+    pub fn user_point(&self, point: DVec3) -> DVec3 {
+        point / self.scale + self.shift
+    }
 }
 
 /// Returns spheres that stand for bodies.
