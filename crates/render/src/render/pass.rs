@@ -3,9 +3,10 @@
 use crate::film::{Pilot, Region, Tile, View};
 use crate::integrator::Job;
 use crate::integrator::clock::Stage;
+use crate::integrator::columns::BATCH_PATHS;
 use crate::integrator::generate::generate_streams;
 use crate::integrator::probe_batch::ProbeBatch;
-use crate::integrator::workspace::{BATCH_PATHS, Workspace};
+use crate::integrator::workspace::Workspace;
 use crate::sampling::Sampler;
 use crate::scene::Rgb;
 use crate::world::World;

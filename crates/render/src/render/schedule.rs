@@ -2,7 +2,7 @@
 
 use super::pass::PASS;
 use crate::film::TILE;
-use crate::integrator::workspace::BATCH_PATHS;
+use crate::integrator::columns::BATCH_PATHS;
 use std::ops::Range;
 
 /// Minimum number of times that each thread takes tasks: then all threads end at about the same time.

@@ -1,8 +1,15 @@
 //! Structures of arrays: columns of 32-bit words.
 
-use super::workspace::ROWS;
 use crate::lanes::{F32x16, MAX_LANES, Packing, U32x16};
 use crate::vec3::Vec3;
+
+/// Paths of a batch: 16 samples of each pixel of a tile. With fewer, more rows of lanes are half empty
+/// when most paths have ended: with 1024, scenes of a few spheres take 5 % longer, with 512 12 %.
+pub const BATCH_PATHS: usize = 4096;
+
+/// Rows of a column: room for a partial row of lanes, and such that columns do not all start in the
+/// same sets of the first-level cache.
+pub(super) const ROWS: usize = BATCH_PATHS + MAX_LANES;
 
 /// Sixteen rows of columns, one in each lane, and the lanes that count.
 #[derive(Clone, Copy, Debug)]

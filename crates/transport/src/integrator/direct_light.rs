@@ -5,6 +5,7 @@ use super::shading_row::ShadingRow;
 use super::shadow_queue::enqueue_shadow_rays;
 use super::workspace::Workspace;
 use crate::lanes::{F32x16, Lanes, Mask};
+use crate::sampling::power_heuristic;
 use crate::shade::{Bsdf, Material};
 
 /// Samples one light for each path in `lanes`, and enqueues a shadow ray toward it.
@@ -28,7 +29,7 @@ pub(super) fn sample_direct_light<M: Material>(
     } else {
         job.sampler.light_row(&work.paths.sampler_row(state), bounce)
     };
-    let samples = lights.sample_row(job.world, &shading.surface_row.at, numbers, lanes);
+    let samples = job.world.sample_light_row(&shading.surface_row.at, numbers, lanes);
     let incoming = shading.bases.to_local(samples.direction);
     // Lanes whose light BSDF sampling may find as well.
     let both = if M::DIFFUSE {
@@ -47,13 +48,4 @@ pub(super) fn sample_direct_light<M: Material>(
     let above = Lanes::lt(F32x16::splat(0.0), incoming.z).bits();
     let lanes = samples.lanes & above;
     enqueue_shadow_rays(job, work, shading.surface_row, &samples, lanes, light);
-}
-
-/// Returns the power heuristic: weights of samples with density `found`, more than 0, that another
-/// technique finds with density `other`.
-#[inline(always)]
-pub(super) fn power_heuristic<L: Lanes>(found: L, other: L) -> L {
-    // The ratio's square may overflow, to the right limit.
-    let ratio = other / found;
-    L::splat(1.0) / ratio.mul_add(ratio, L::splat(1.0))
 }

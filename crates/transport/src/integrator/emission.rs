@@ -3,12 +3,12 @@
 use super::Job;
 use super::caustics;
 use super::columns::{LaneRows, row};
-use super::direct_light::power_heuristic;
 use super::mirrored_light;
 use super::path_state::{PathStateRow, PreviousBounce};
 use super::workspace::Workspace;
 use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask, bits, bits_of, first_lanes, set_bits};
 use crate::ray::MISS;
+use crate::sampling::power_heuristic;
 use crate::scene::Rgb;
 use crate::shade::MaterialKind;
 use crate::vec3::Vec3;

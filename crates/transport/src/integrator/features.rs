@@ -1,8 +1,7 @@
 //! Features of camera rays, recorded while the picture's paths are followed.
 
-use super::workspace::Workspace;
 use crate::film::FeatureSums;
-use crate::ray::MISS;
+use crate::ray::{Columns3, MISS};
 use crate::world::World;
 use std::ops::Range;
 
@@ -21,39 +20,48 @@ impl FeatureBatch {
         self.sums.clear();
     }
 
+    /// Records the hits of rays and their surfaces' normals, if they are wanted; `coverage` is empty where bodies are opaque.
+    pub(super) fn record(
+        &mut self,
+        world: &World,
+        hits: &[u32],
+        facing: &Columns3,
+        coverage: &[f32],
+    ) {
+        let samples = std::mem::take(&mut self.samples);
+        if samples == 0 {
+            return;
+        }
+        let rows = (0..hits.len()).step_by(samples).map(|first| first..first + samples);
+        self.sums.extend(rows.map(|rows| of_pixel(world, hits, facing, coverage, rows)));
+    }
+
     /// Returns the sums of a range of the recorded pixels.
     pub fn sums(&self, pixels: Range<usize>) -> &[FeatureSums] {
         self.sums.get(pixels).unwrap_or_default()
     }
 }
 
-/// Records the current rays' hits and surfaces, if they are wanted.
-pub(super) fn record(world: &World, work: &mut Workspace) {
-    let samples = std::mem::take(&mut work.features.samples);
-    if samples == 0 {
-        return;
-    }
-    let mut sums = std::mem::take(&mut work.features.sums);
-    let rows = (0..work.len()).step_by(samples);
-    sums.extend(rows.map(|first| of_pixel(world, work, first..first + samples)));
-    work.features.sums = sums;
-}
-
 /// Returns the sums of the features of a pixel's rays.
-fn of_pixel(world: &World, work: &Workspace, rows: Range<usize>) -> FeatureSums {
+fn of_pixel(
+    world: &World,
+    hits: &[u32],
+    facing: &Columns3,
+    coverage: &[f32],
+    rows: Range<usize>,
+) -> FeatureSums {
     let mut sums = FeatureSums::default();
     let mut first = rows.start;
     // Most pixels show one surface.
-    for same in work.hits.sphere[rows].chunk_by(|a, b| a == b) {
+    for same in hits[rows].chunk_by(|a, b| a == b) {
         let rows = first..first + same.len();
         first = rows.end;
         if same[0] == MISS {
             continue;
         }
         let albedo = world.albedo(same[0]).to_array();
-        let facing = &work.surface.facing;
         let normal = [&facing.x, &facing.y, &facing.z].map(|column| &column[rows.clone()]);
-        match work.coverages(rows) {
+        match coverage.get(rows) {
             None => sums.add_covered(albedo, normal),
             Some(coverages) => sums.add(albedo, normal, coverages),
         }

@@ -11,31 +11,17 @@
 
 use super::Job;
 use super::caustics::{self, CameraSegment};
-use super::direct_light::power_heuristic;
+use super::seen_lights::PLACES;
 use super::shadow_queue::{self, ShadowRay};
 use super::workspace::Workspace;
-use crate::film::Region;
 use crate::lanes::{Doubles, F32x16, F64x8, Lanes, MAX_LANES, first_lanes, set_bits, widen};
 use crate::ray::MISS;
-use crate::sampling::{ONE_BELOW, concentric_disk, next_in_square};
-use crate::scene::{Integrator, Rgb};
+use crate::sampling::{ONE_BELOW, concentric_disk, next_in_square, power_heuristic};
+use crate::scene::Rgb;
 use crate::shade::fresnel;
 use crate::vec3::Vec3 as Row;
-use crate::world::{Caster, CausticPath, CausticSource, LightImage, SeenLight, World};
+use crate::world::{Caster, CausticPath, CausticSource, SeenLight, World};
 use glam::{DVec3, Vec3};
-
-/// Places in a pixel that are tested for each sample: a row.
-const PLACES: usize = MAX_LANES;
-
-/// Images of lights near the pixels of a batch of paths.
-#[derive(Default)]
-pub struct SeenLights {
-    images: Vec<LightImage>,
-    /// Their numbers in the list of all.
-    numbers: Vec<u32>,
-    /// By path: its pixel.
-    pixels: Vec<[u32; 2]>,
-}
 
 /// Ways of camera rays to a light.
 #[derive(Clone, Copy)]
@@ -67,92 +53,6 @@ struct Way {
     toward_light: Vec3,
     length: f64,
     cosine: f32,
-}
-
-impl Job<'_> {
-    /// Returns whether lights that the camera sees are sampled; shadow rays need a bounce.
-    fn samples_images(&self) -> bool {
-        self.settings.caustics
-            && self.depth() > 0
-            && self.settings.integrator == Integrator::Path
-            && !self.world.light_images.is_empty()
-    }
-}
-
-impl SeenLights {
-    /// Prepares for paths of pixels of some regions.
-    pub fn begin(&mut self, job: &Job, regions: impl Iterator<Item = Region>) {
-        if !job.samples_images() {
-            return;
-        }
-        self.numbers.clear();
-        for Region { x, y, width, height } in regions {
-            let near = job.world.light_images.near([x, y], [x + width, y + height]);
-            self.numbers.extend(near);
-        }
-        self.numbers.sort_unstable();
-        self.numbers.dedup();
-        let images = self.numbers.iter().map(|&number| job.world.light_images.image(number));
-        self.images.clear();
-        self.images.extend(images.filter(|image| image.light.bounces() <= job.depth()));
-    }
-
-    /// Returns whether there are no images near the pixels.
-    pub fn is_empty(&self) -> bool {
-        self.images.is_empty()
-    }
-
-    /// Returns whether the camera sees a light in a pixel of these regions.
-    pub fn are_in(&self, job: &Job, (x, y): (u32, u32)) -> bool {
-        self.images.iter().any(|image| image.reaches([x, y], job.filter.radius()))
-    }
-
-    /// Stores the pixels of sixteen paths from `first` on.
-    pub(super) fn set_pixels(&mut self, first: usize, columns: &[f32], rows: &[f32]) {
-        if !self.images.is_empty() {
-            self.pixels.truncate(first);
-            let pixels = columns.iter().zip(rows).map(|(&x, &y)| [x as u32, y as u32]);
-            self.pixels.extend(pixels.take(MAX_LANES));
-        }
-    }
-
-    /// Returns an image of a light if that is sampled for the pixel of a path.
-    pub(crate) fn find(&self, job: &Job, path: usize, light: &SeenLight) -> Option<&LightImage> {
-        let mut of_light = self.images.iter().filter(|image| image.light == *light);
-        of_light.find(|image| image.reaches(self.pixels[path], job.filter.radius()))
-    }
-
-    /// Returns the standard deviation of what is sampled of a light in the pixel of a path, relative to that of
-    /// what camera rays find: nearly 0 for points of the light, that of a mean for places in the pixel.
-    pub(super) fn deviation(&self, job: &Job, path: usize, source: CausticSource) -> f32 {
-        let mut places =
-            self.images.iter().filter(|image| image.light.source == source && !image.is_tiny());
-        let reached = |image: &LightImage| image.reaches(self.pixels[path], job.filter.radius());
-        if places.any(reached) { (PLACES as f32).sqrt().recip() } else { 0.0 }
-    }
-
-    /// Returns the pixel of a path.
-    pub(super) fn pixel(&self, path: usize) -> [u32; 2] {
-        self.pixels[path]
-    }
-
-    /// Collects the selected lights of a pixel, each once, and whether their images are tiny.
-    fn collect(
-        &self,
-        job: &Job,
-        pixel: [u32; 2],
-        selected: &impl Fn(&SeenLight) -> bool,
-        lights: &mut Vec<(SeenLight, bool)>,
-    ) {
-        lights.clear();
-        for image in self.images.iter().filter(|image| selected(&image.light)) {
-            let light = (image.light, image.is_tiny());
-            // Images of one light are neighbors.
-            if image.reaches(pixel, job.filter.radius()) && lights.last() != Some(&light) {
-                lights.push(light);
-            }
-        }
-    }
 }
 
 /// Paths of a row that belong to one pixel, with their random numbers.
@@ -238,7 +138,7 @@ fn sample_points(job: &Job, work: &mut Workspace, row: &PixelRow, light: &SeenLi
             let one = |v: Row<F32x16>| -> Vec3 { v.map(|row| row.to_array()[lane]).into() };
             let number = |row: F32x16| row.to_array()[lane];
             let (origin, toward) = (one(origins), one(sample.toward));
-            let camera = camera_pdf(job, row.pixel, origin, toward);
+            let camera = job.camera_pdf(row.pixel, origin, toward);
             let (pdf, kept) = (number(sample.pdf), number(sample.kept));
             // The probability with which a camera ray goes on to the light.
             let chance = if light.through || !casters.mirrored_light { kept } else { 1.0 };
@@ -272,9 +172,9 @@ fn sample_point(
         CausticSource::Sphere(row) => lights.emitter_index(&world.spheres, row),
         CausticSource::Sun(sun) => Some(lights.sun_index(sun)),
     };
-    let sample = index.and_then(|index| lights.sample(world, index, origin, MISS, u));
+    let sample = index.and_then(|index| world.sample_light(index, origin, MISS, u));
     let Some((sample, pdf)) = sample.and_then(|sample| Some((sample, sample.pdf?))) else { return };
-    let camera = camera_pdf(job, row.pixel, origin, sample.direction);
+    let camera = job.camera_pdf(row.pixel, origin, sample.direction);
     let way = Way {
         origin,
         toward: sample.direction,
@@ -285,13 +185,6 @@ fn sample_point(
         cosine: 1.0,
     };
     push(job, work, row.first + lane, light, &way, camera / pdf);
-}
-
-/// Returns the density by solid angle of the camera rays of a pixel, from a point of the lens.
-pub(super) fn camera_pdf(job: &Job, [x, y]: [u32; 2], origin: Vec3, toward: Vec3) -> f32 {
-    let (place, area) = job.world.camera.place(origin.as_dvec3(), toward.as_dvec3());
-    let offset = [place.x - f64::from(x) - 0.5, place.y - f64::from(y) - 0.5];
-    (job.filter.pdf(offset) * area) as f32
 }
 
 /// Samples a light for one path: tests places in its pixel.

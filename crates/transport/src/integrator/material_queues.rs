@@ -1,10 +1,9 @@
 //! Material queues: hits sorted by kind of material, so that a kernel shades hits of one kind.
 
-use super::columns::{LaneRows, WordColumns, float_bits, row};
+use super::columns::{LaneRows, ROWS, WordColumns, float_bits, row};
 use super::material_table::MaterialTable;
 use super::path_state::{PathStateRow, PathStates};
 use super::surface::SurfaceColumns;
-use super::workspace::ROWS;
 use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask, Packing, U32x16, bits, first_lanes, set_bits};
 use crate::ray::{GROUND, Hits, MISS, Rays};
 use crate::shade::MaterialKind;

@@ -1,9 +1,10 @@
 //! Materials of hits, sixteen at a time: by table lookup in registers if the world has few spheres.
 
-use super::stages::{KindVisitor, for_each_kind};
 use crate::lanes::{F32x16, MAX_LANES, U32x16, look_up};
 use crate::ray::{GROUND, MISS};
-use crate::shade::{GatheredParams, Material, MaterialId, MaterialKind, Params, floats};
+use crate::shade::{
+    GatheredParams, KindVisitor, Material, MaterialId, MaterialKind, Params, floats,
+};
 use crate::world::World;
 use bytemuck::Zeroable;
 
@@ -57,7 +58,7 @@ impl MaterialTable {
         };
         let mut table =
             Self { queues: U32x16::new(std::array::from_fn(queue)), params: Default::default() };
-        for_each_kind(world, &mut Fill { world, table: &mut table });
+        world.materials.for_each_kind(&mut Fill { world, table: &mut table });
         Some(table)
     }
 
@@ -146,7 +147,7 @@ mod tests {
             let expected = material(&world, hit).map_or(ESCAPED, |id| id.kind() as usize);
             assert_eq!(queue as usize, expected);
         }
-        for_each_kind(&world, &mut Compare { world: &world, table: &table });
+        world.materials.for_each_kind(&mut Compare { world: &world, table: &table });
     }
 
     /// A visitor that compares the lookups with the tables of materials.

@@ -1,8 +1,8 @@
 //! Next rays: the rays of the next bounce, without gaps (compaction).
 
+use super::columns::{BATCH_PATHS, ROWS};
 use super::path_state::{PathStateRow, PathStates};
 use super::surface::Normals;
-use super::workspace::{BATCH_PATHS, ROWS};
 use crate::lanes::{F32x16, MAX_LANES, Packing};
 use crate::ray::{Hits, MISS, Rays};
 use crate::vec3::Vec3;

@@ -22,10 +22,10 @@ use super::near_misses;
 use super::path_state::PathStateRow;
 use super::roulette::{roulette_active, roulette_threshold, survival_probability};
 use super::shading_row::{ShadingRow, SurfaceLanes};
-use super::stages::{self, KindVisitor};
+use super::stages;
 use super::workspace::Workspace;
 use crate::lanes::{F32x16, Lanes, Mask};
-use crate::shade::{Bsdf, Material, MaterialId, MaterialKind, mirror};
+use crate::shade::{Bsdf, KindVisitor, Material, MaterialId, MaterialKind, mirror};
 
 /// Follows all paths to their ends.
 pub fn integrate(job: &Job, work: &mut Workspace) {
@@ -42,10 +42,11 @@ pub fn integrate(job: &Job, work: &mut Workspace) {
         }
         caustics::track_chains(job, work);
         glass::scatter(job, work, bounce);
-        stages::for_each_kind(
-            job.world,
-            &mut Shade { job, work, bounce: Bounce { index: bounce, threshold } },
-        );
+        job.world.materials.for_each_kind(&mut Shade {
+            job,
+            work,
+            bounce: Bounce { index: bounce, threshold },
+        });
         caustics::flush(job, work);
         if !stages::end_bounce(job, work) {
             return;

@@ -11,12 +11,12 @@ use super::material_table::{MaterialsOfKind, gather_bsdfs};
 use super::path_state::PathStateRow;
 use super::shading_row::{ShadingRow, SurfaceLanes};
 use super::shadow_queue::enqueue_shadow_rays;
-use super::stages::{self, KindVisitor};
+use super::stages;
 use super::whitted;
 use super::workspace::Workspace;
 use crate::lanes::{F32x16, Lanes, Mask, bits};
 use crate::ray::GROUND;
-use crate::shade::{Bsdf, Material, MaterialId, MaterialKind, mirror};
+use crate::shade::{Bsdf, KindVisitor, Material, MaterialId, MaterialKind, mirror};
 use crate::vec3::Vec3;
 use crate::world::{Irradiance, MAX_MIDDLES};
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -54,7 +54,7 @@ pub fn integrate(job: &Job, work: &mut Workspace, lighting: &Lighting) {
         whitted::add_environment(job, work, bounce);
         whitted::add_emitted(job, work);
         glass::scatter_by(job, work, bounce, |_, _| F32x16::splat(0.5));
-        stages::for_each_kind(job.world, &mut Shade { job, work, lighting });
+        job.world.materials.for_each_kind(&mut Shade { job, work, lighting });
         if bounce == 0 {
             let visible = if lighting.flat { 1.0 } else { MEAN };
             work.add_missing_colors(visible * FRAC_1_PI * lighting.irradiance.mean());
@@ -136,7 +136,7 @@ impl Shade<'_> {
         let (world, surface_row) = (self.job.world, shading.surface_row);
         let lights = &world.lights;
         for index in 0..lights.count_without_sky().min(MAX_MIDDLES) {
-            let samples = lights.middle_row(world, &surface_row.at, index, lanes);
+            let samples = world.middle_light_row(&surface_row.at, index, lanes);
             let incoming = shading.bases.to_local(samples.direction);
             let response = bsdf.eval(shading.outgoing, incoming);
             let light = surface_row.state.throughput.times(response).times(samples.weight);

@@ -3,11 +3,10 @@
 use super::columns::LaneRows;
 use super::material_queues::MaterialQueue;
 use super::path_state::PathStateRow;
-use super::workspace::Workspace;
 use crate::lanes::{F32x16, Lanes, U32x16};
-use crate::sampling::{Bases, Basis};
+use crate::sampling::Bases;
 use crate::vec3::Vec3;
-use crate::world::{LANES, ReceiverRow, World};
+use crate::world::{ReceiverRow, World};
 
 /// A row of surface points from which shadow rays or next rays start.
 pub struct SurfaceLanes {
@@ -34,21 +33,6 @@ pub struct ShadingRow<'a> {
 }
 
 impl SurfaceLanes {
-    /// Broadcasts the hit of the path in `row` to all lanes.
-    pub fn broadcast(work: &Workspace, row: usize, local: &LocalSurface) -> Self {
-        let splat = |v: glam::Vec3| Vec3::from(v).map(F32x16::splat);
-        Self {
-            rows: U32x16::splat(row as u32),
-            at: ReceiverRow {
-                point: splat(work.surface.point.row(row)),
-                normal: splat(local.basis.normal),
-                own: [work.hits.sphere[row]; LANES],
-            },
-            inside: if local.inside { u32::from(u16::MAX) } else { 0 },
-            state: work.states.broadcast(row),
-        }
-    }
-
     /// Loads sixteen hits of a queue.
     #[inline(always)]
     pub fn load(queue: &MaterialQueue, first: usize) -> Self {
@@ -63,9 +47,7 @@ impl SurfaceLanes {
             state: queue.state_row(first),
         }
     }
-}
 
-impl SurfaceLanes {
     /// Returns the characteristic colors at the points: [`World::albedo`].
     #[inline(always)]
     pub fn albedo(&self, world: &World) -> Vec3<F32x16> {
@@ -90,38 +72,5 @@ impl<'a> ShadingRow<'a> {
     #[inline(always)]
     pub fn to_world(&self, local: Vec3<F32x16>) -> Vec3<F32x16> {
         self.bases.to_world(local).normalize()
-    }
-}
-
-/// A surface point with its local basis.
-#[derive(Clone, Copy)]
-pub struct LocalSurface {
-    /// Transform to world space and back; z is the normal on the side that the ray comes from.
-    pub basis: Basis,
-    /// Local unit vector toward the origin of the ray.
-    pub outgoing: glam::Vec3,
-    /// True if the sphere is hit from inside.
-    pub inside: bool,
-}
-
-impl LocalSurface {
-    /// Creates the basis of the hit in row `row`.
-    #[inline]
-    pub fn new(work: &Workspace, row: usize) -> Self {
-        let direction = work.rays.direction.row(row);
-        let normal = work.surface.normal.row(row);
-        let inside = normal.dot(direction.as_dvec3()) > 0.0;
-        let facing = if inside { -normal } else { normal };
-        let basis = Basis::new(facing.as_vec3());
-        let mut outgoing = basis.to_local(-direction);
-        // At grazing angles, rounding may move the direction below the horizon.
-        outgoing.z = outgoing.z.max(f32::EPSILON);
-        Self { basis, outgoing, inside }
-    }
-
-    /// Transforms a sampled direction to world space, of unit length.
-    #[inline]
-    pub fn to_world(&self, incoming: glam::Vec3) -> glam::Vec3 {
-        self.basis.to_world(incoming).normalize()
     }
 }

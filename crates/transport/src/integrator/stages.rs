@@ -2,15 +2,11 @@
 
 use super::Job;
 use super::clock::Stage;
-use super::features;
 use super::shadow_queue;
-use super::surface::compute_surfaces;
 use super::workspace::Workspace;
 use crate::film::View;
 use crate::ray::MISS;
-use crate::shade::{Material, MaterialId, MaterialKind};
 use crate::trace;
-use crate::world::World;
 
 /// Traces the rays, computes the surface points, and fills the material queues.
 pub fn intersect(job: &Job, work: &mut Workspace) {
@@ -29,8 +25,8 @@ pub fn intersect(job: &Job, work: &mut Workspace) {
     }
     work.probes.count_rays((0..work.rays.len()).map(|row| work.states.path(row) as u32));
     work.clock.end(Stage::Trace);
-    compute_surfaces(job.world, work);
-    features::record(job.world, work);
+    work.surface.compute(job.world, &work.rays, &work.hits);
+    work.record_features(job.world);
     work.sort(job.world);
     work.clock.end(Stage::Surface);
 }
@@ -43,20 +39,4 @@ pub fn end_bounce(job: &Job, work: &mut Workspace) -> bool {
     work.clock.end(Stage::Shade);
     work.counters.bounce_rays += work.len() as u64;
     !work.is_empty()
-}
-
-/// A visitor of the kinds of materials.
-pub trait KindVisitor {
-    /// Visits one kind, whose materials `table` returns.
-    fn visit<M: Material>(&mut self, kind: MaterialKind, table: impl Fn(MaterialId) -> M);
-}
-
-/// Calls a visitor for every kind of material except glass.
-pub fn for_each_kind(world: &World, system: &mut impl KindVisitor) {
-    let tables = &world.materials;
-    system.visit(MaterialKind::Lambertian, |id| tables.lambertian[id.row()]);
-    system.visit(MaterialKind::Conductor, |id| tables.conductor[id.row()]);
-    system.visit(MaterialKind::Plastic, |id| tables.plastic[id.row()]);
-    system.visit(MaterialKind::Reflective, |id| tables.reflective[id.row()]);
-    system.visit(MaterialKind::Emitter, |id| tables.emitter[id.row()].surface());
 }

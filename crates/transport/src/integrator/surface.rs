@@ -1,8 +1,8 @@
 //! Surface interactions: points and normals of hits, and chords through spheres.
 
-use super::workspace::{BATCH_PATHS, Workspace};
+use super::columns::BATCH_PATHS;
 use crate::lanes::{Doubles, F64x8, MAX_LANES, Mask, U32x16, load_doubles, look_up, widen};
-use crate::ray::{Columns3, GROUND, MISS};
+use crate::ray::{Columns3, GROUND, Hits, MISS, Rays};
 use crate::spheres::{LEAF, Spheres};
 use crate::vec3::Vec3;
 use crate::world::{Ground, World};
@@ -55,6 +55,123 @@ impl SurfaceColumns {
     #[cfg(test)]
     pub(super) fn flip_inside(&mut self, row: usize) {
         self.inside[row / LANES] ^= 1 << (row % LANES);
+    }
+
+    /// Computes the points and outward normals of all hits in double precision, from the surfaces
+    /// themselves: points are no farther off the surfaces than rounding moves them.
+    pub(super) fn compute(&mut self, world: &World, rays: &Rays, hits: &Hits) {
+        let spheres = &world.spheres;
+        match SmallSphereTable::new(spheres) {
+            Some(table) => self.compute_rows(world, rays, hits, |hits| table.gather(hits)),
+            None => self.compute_rows(world, rays, hits, |hits| gather_spheres(spheres, hits)),
+        }
+        if world.has_other_bodies() {
+            (0..rays.len()).for_each(|row| self.compute_other_body(world, rays, hits, row));
+        }
+        if !world.cut.is_empty() {
+            (0..rays.len()).for_each(|row| self.compute_cut_sphere(world, rays, hits, row));
+        }
+        if !world.cut.is_empty() || world.has_other_bodies() {
+            for first in (0..rays.len()).step_by(LANES) {
+                let normal = self.normal.load(first);
+                self.set_facing(first, normal, load(&rays.direction, first));
+            }
+        }
+    }
+
+    /// Computes points and normals where no sphere is cut; `gather` returns centers and radii.
+    #[inline(always)]
+    fn compute_rows(
+        &mut self,
+        world: &World,
+        rays: &Rays,
+        hits: &Hits,
+        gather: impl Fn(&[u32; LANES]) -> (Vec3<F64x8>, F64x8),
+    ) {
+        for first in (0..rays.len()).step_by(LANES) {
+            let row = hits.sphere[first..].first_chunk().expect("columns hold whole rows");
+            // Rays of a row often all miss: samples of a pixel are neighbors.
+            if *row != [MISS; LANES] {
+                let (center, radius) = gather(row);
+                self.compute_row(world, rays, hits, first, center, radius);
+            }
+        }
+    }
+
+    /// Computes points and normals of eight rows, on spheres with these centers and radii; lanes
+    /// without a hit get arbitrary values.
+    #[inline(always)]
+    fn compute_row(
+        &mut self,
+        world: &World,
+        rays: &Rays,
+        hits: &Hits,
+        first: usize,
+        center: Vec3<F64x8>,
+        radius: F64x8,
+    ) {
+        let hit = numbers(&hits.sphere[first..]);
+        let missed = equal(hit, F64x8::splat(f64::from(MISS)));
+        let grounded = equal(hit, F64x8::splat(f64::from(GROUND)));
+        let (origin, direction) = (load(&rays.origin, first), load(&rays.direction, first));
+        let t = row(&hits.t[first..]);
+        let mut toward = (origin - center) + direction * t;
+        let through = equal(hit, numbers(&rays.own[first..])) & !missed;
+        if through.bits() != 0 {
+            let exit = chord_exit(self.normal.load(first), direction);
+            toward = Vec3::select(through, exit, toward);
+        }
+        let scale = toward.inverse_length();
+        let mut normal = toward * scale;
+        // The normal of a sphere that is smaller than rounding is against the ray: nothing else is known.
+        let known = scale.lt(F64x8::splat(f64::INFINITY)) & F64x8::splat(0.0).lt(scale);
+        if (known | missed | grounded).bits() != ALL {
+            normal = Vec3::select(known, normal, -(direction * direction.inverse_length()));
+        }
+        let mut point = center + normal * radius;
+        if let Some(ground) = &world.ground
+            && grounded.bits() != 0
+        {
+            let (projected, up) = project_to_ground(ground, origin + direction * t);
+            point = Vec3::select(grounded, projected, point);
+            normal = Vec3::select(grounded, up, normal);
+        }
+        self.point.set_row(first, point);
+        self.normal.set_row(first, normal);
+        self.set_facing(first, normal, direction);
+    }
+
+    /// Computes the point and the normal of a hit on a body that is no sphere.
+    fn compute_other_body(&mut self, world: &World, rays: &Rays, hits: &Hits, row: usize) {
+        let (ray, t) = (rays.exact(row), hits.t[row]);
+        let Some(body) = world.body(hits.sphere[row]) else { return };
+        let Some((point, normal)) = world.trees().surface_at(body, &ray, t) else { return };
+        self.point.set(row, point);
+        self.normal.set(row, normal);
+    }
+
+    /// Corrects the hits on spheres that are cut: points of caps, and exits from spheres entered by a cap.
+    #[cold]
+    fn compute_cut_sphere(&mut self, world: &World, rays: &Rays, hits: &Hits, row: usize) {
+        let hit = hits.sphere[row];
+        if hit == GROUND || hit == MISS {
+            return;
+        }
+        let (ray, own, t) = (rays.exact(row), rays.own[row], hits.t[row]);
+        if let Some(normal) = world.cut.cap(&ray, own, t) {
+            self.point.set(row, ray.at(t).as_vec3());
+            self.normal.set(row, normal);
+            return;
+        }
+        if hit as usize >= world.spheres.len() {
+            return;
+        }
+        let (center, radius) = world.spheres.exact(hit as usize);
+        if own == hit && world.cut.divides(center, radius) {
+            let normal = exit_normal(ray.at_from(center, t), ray.direction.normalize());
+            self.point.set(row, (center + normal * radius).as_vec3());
+            self.normal.set(row, normal);
+        }
     }
 
     /// Sets the normals of rows `first..first + 8` on the sides that their rays, of these directions,
@@ -151,86 +268,6 @@ fn equal(a: F64x8, b: F64x8) -> <F64x8 as Doubles>::Mask {
     (a - b).abs().lt(F64x8::splat(0.5))
 }
 
-/// Computes the points and outward normals of all hits in double precision, from the surfaces
-/// themselves: points are no farther off the surfaces than rounding moves them.
-pub(super) fn compute_surfaces(world: &World, work: &mut Workspace) {
-    let spheres = &world.spheres;
-    match SmallSphereTable::new(spheres) {
-        Some(table) => compute_rows(world, work, |hits| table.gather(hits)),
-        None => compute_rows(world, work, |hits| gather_spheres(spheres, hits)),
-    }
-    if world.has_other_bodies() {
-        (0..work.len()).for_each(|row| compute_other_body(world, work, row));
-    }
-    if !world.cut.is_empty() {
-        (0..work.len()).for_each(|row| compute_cut_sphere(world, work, row));
-    }
-    if !world.cut.is_empty() || world.has_other_bodies() {
-        for first in (0..work.len()).step_by(LANES) {
-            let normal = work.surface.normal.load(first);
-            work.surface.set_facing(first, normal, load(&work.rays.direction, first));
-        }
-    }
-}
-
-/// Computes points and normals where no sphere is cut; `gather` returns centers and radii.
-#[inline(always)]
-fn compute_rows(
-    world: &World,
-    work: &mut Workspace,
-    gather: impl Fn(&[u32; LANES]) -> (Vec3<F64x8>, F64x8),
-) {
-    for first in (0..work.len()).step_by(LANES) {
-        let hits = work.hits.sphere[first..].first_chunk().expect("columns hold whole rows");
-        // Rays of a row often all miss: samples of a pixel are neighbors.
-        if *hits != [MISS; LANES] {
-            let (center, radius) = gather(hits);
-            compute_row(world, work, first, center, radius);
-        }
-    }
-}
-
-/// Computes points and normals of eight rows, on spheres with these centers and radii; lanes
-/// without a hit get arbitrary values.
-#[inline(always)]
-fn compute_row(
-    world: &World,
-    work: &mut Workspace,
-    first: usize,
-    center: Vec3<F64x8>,
-    radius: F64x8,
-) {
-    let hit = numbers(&work.hits.sphere[first..]);
-    let missed = equal(hit, F64x8::splat(f64::from(MISS)));
-    let grounded = equal(hit, F64x8::splat(f64::from(GROUND)));
-    let (origin, direction) = (load(&work.rays.origin, first), load(&work.rays.direction, first));
-    let t = row(&work.hits.t[first..]);
-    let mut toward = (origin - center) + direction * t;
-    let through = equal(hit, numbers(&work.rays.own[first..])) & !missed;
-    if through.bits() != 0 {
-        let exit = chord_exit(work.surface.normal.load(first), direction);
-        toward = Vec3::select(through, exit, toward);
-    }
-    let scale = toward.inverse_length();
-    let mut normal = toward * scale;
-    // The normal of a sphere that is smaller than rounding is against the ray: nothing else is known.
-    let known = scale.lt(F64x8::splat(f64::INFINITY)) & F64x8::splat(0.0).lt(scale);
-    if (known | missed | grounded).bits() != ALL {
-        normal = Vec3::select(known, normal, -(direction * direction.inverse_length()));
-    }
-    let mut point = center + normal * radius;
-    if let Some(ground) = &world.ground
-        && grounded.bits() != 0
-    {
-        let (projected, up) = project_to_ground(ground, origin + direction * t);
-        point = Vec3::select(grounded, projected, point);
-        normal = Vec3::select(grounded, up, normal);
-    }
-    work.surface.point.set_row(first, point);
-    work.surface.normal.set_row(first, normal);
-    work.surface.set_facing(first, normal, direction);
-}
-
 /// Projects a point to the ground; returns the projection and the ground's normal.
 #[inline(always)]
 fn project_to_ground(ground: &Ground, point: Vec3<F64x8>) -> (Vec3<F64x8>, Vec3<F64x8>) {
@@ -245,39 +282,6 @@ fn project_to_ground(ground: &Ground, point: Vec3<F64x8>) -> (Vec3<F64x8>, Vec3<
 fn chord_exit(entry: Vec3<F64x8>, direction: Vec3<F64x8>) -> Vec3<F64x8> {
     let length2 = direction.dot_unfused(direction);
     entry - direction * (F64x8::splat(2.0) * entry.dot_unfused(direction) / length2)
-}
-
-/// Computes the point and the normal of a hit on a body that is no sphere.
-fn compute_other_body(world: &World, work: &mut Workspace, row: usize) {
-    let (ray, t) = (work.rays.exact(row), work.hits.t[row]);
-    let Some(body) = world.body(work.hits.sphere[row]) else { return };
-    let Some((point, normal)) = world.trees().surface_at(body, &ray, t) else { return };
-    work.surface.point.set(row, point);
-    work.surface.normal.set(row, normal);
-}
-
-/// Corrects the hits on spheres that are cut: points of caps, and exits from spheres entered by a cap.
-#[cold]
-fn compute_cut_sphere(world: &World, work: &mut Workspace, row: usize) {
-    let hit = work.hits.sphere[row];
-    if hit == GROUND || hit == MISS {
-        return;
-    }
-    let (ray, own, t) = (work.rays.exact(row), work.rays.own[row], work.hits.t[row]);
-    if let Some(normal) = world.cut.cap(&ray, own, t) {
-        work.surface.point.set(row, ray.at(t).as_vec3());
-        work.surface.normal.set(row, normal);
-        return;
-    }
-    if hit as usize >= world.spheres.len() {
-        return;
-    }
-    let (center, radius) = world.spheres.exact(hit as usize);
-    if own == hit && world.cut.divides(center, radius) {
-        let normal = exit_normal(ray.at_from(center, t), ray.direction.normalize());
-        work.surface.point.set(row, (center + normal * radius).as_vec3());
-        work.surface.normal.set(row, normal);
-    }
 }
 
 /// Returns the outward unit normal where a ray leaves a sphere, from the point relative to the center

@@ -12,17 +12,19 @@ use super::material_queues::MaterialQueue;
 use super::near_misses;
 use super::path_state::PathStateRow;
 use super::roulette::{roulette_threshold, survival_probability};
-use super::shading_row::{LocalSurface, SurfaceLanes};
+use super::shading_row::SurfaceLanes;
 use super::shadow_queue;
-use super::stages::{self, KindVisitor};
+use super::stages;
 use super::workspace::Workspace;
-use crate::lanes::{F32x16, Lanes, Mask, first_lanes};
+use crate::lanes::{F32x16, Lanes, Mask, U32x16, first_lanes};
 use crate::ray::MISS;
-use crate::sampling::{Bases, cosine_hemispheres};
+use crate::sampling::{Bases, Basis, cosine_hemispheres};
 use crate::scene::Rgb;
-use crate::shade::{BroadcastParams, Bsdf, Material, MaterialId, MaterialKind, mirror};
+use crate::shade::{
+    BroadcastParams, Bsdf, KindVisitor, Material, MaterialId, MaterialKind, mirror,
+};
 use crate::vec3::Vec3 as Row3;
-use crate::world::{LANES, LightLanes, World};
+use crate::world::{LANES, LightLanes, ReceiverRow, World};
 use std::f32::consts::PI;
 
 /// Follows all paths to their ends, with `samples` shadow samples per light and hit.
@@ -40,7 +42,7 @@ pub fn integrate(job: &Job, work: &mut Workspace, samples: u32) {
         }
         glass::scatter(job, work, bounce);
         let shade = Shade { job, bounce, samples, sky, threshold };
-        stages::for_each_kind(job.world, &mut ShadeKinds { shade, work });
+        job.world.materials.for_each_kind(&mut ShadeKinds { shade, work });
         if !stages::end_bounce(job, work) {
             return;
         }
@@ -169,7 +171,7 @@ impl Shade<'_> {
         let count = if world.lights.is_delta(light) { 1 } else { self.samples };
         let share = work.states.throughput(base.row) / count as f32;
         let (origin, own) = (work.surface.point.row(base.row), work.hits.sphere[base.row]);
-        let Some(view) = world.lights.view(world, light, origin, own) else { return };
+        let Some(view) = world.light_view(light, origin, own) else { return };
         let points =
             self.job.sampler.split(&work.sampler_state(base.row), self.event(light), count);
         for (first, count) in rows(count) {
@@ -259,4 +261,54 @@ impl Shade<'_> {
 /// Splits `count` samples into rows: the first of each row, and its length.
 fn rows(count: u32) -> impl Iterator<Item = (u32, usize)> {
     (0..count).step_by(LANES).map(move |first| (first, LANES.min((count - first) as usize)))
+}
+
+impl SurfaceLanes {
+    /// Broadcasts the hit of the path in `row` to all lanes.
+    fn broadcast(work: &Workspace, row: usize, local: &LocalSurface) -> Self {
+        let splat = |v: glam::Vec3| Row3::from(v).map(F32x16::splat);
+        Self {
+            rows: U32x16::splat(row as u32),
+            at: ReceiverRow {
+                point: splat(work.surface.point.row(row)),
+                normal: splat(local.basis.normal),
+                own: [work.hits.sphere[row]; LANES],
+            },
+            inside: if local.inside { u32::from(u16::MAX) } else { 0 },
+            state: work.states.broadcast(row),
+        }
+    }
+}
+
+/// A surface point with its local basis.
+#[derive(Clone, Copy)]
+struct LocalSurface {
+    /// Transform to world space and back; z is the normal on the side that the ray comes from.
+    basis: Basis,
+    /// Local unit vector toward the origin of the ray.
+    outgoing: glam::Vec3,
+    /// True if the sphere is hit from inside.
+    inside: bool,
+}
+
+impl LocalSurface {
+    /// Creates the basis of the hit in row `row`.
+    #[inline]
+    fn new(work: &Workspace, row: usize) -> Self {
+        let direction = work.rays.direction.row(row);
+        let normal = work.surface.normal.row(row);
+        let inside = normal.dot(direction.as_dvec3()) > 0.0;
+        let facing = if inside { -normal } else { normal };
+        let basis = Basis::new(facing.as_vec3());
+        let mut outgoing = basis.to_local(-direction);
+        // At grazing angles, rounding may move the direction below the horizon.
+        outgoing.z = outgoing.z.max(f32::EPSILON);
+        Self { basis, outgoing, inside }
+    }
+
+    /// Transforms a sampled direction to world space, of unit length.
+    #[inline]
+    fn to_world(self, incoming: glam::Vec3) -> glam::Vec3 {
+        self.basis.to_world(incoming).normalize()
+    }
 }

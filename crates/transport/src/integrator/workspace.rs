@@ -3,16 +3,17 @@
 use super::Job;
 use super::caustics::Caustics;
 use super::clock::Clock;
+use super::columns::{BATCH_PATHS, ROWS};
 use super::counters::Counters;
 use super::elisions::Elisions;
 use super::features::FeatureBatch;
-use super::light_images::SeenLights;
 use super::material_queues::{ESCAPED, HitColumns, MaterialQueues};
 use super::material_table::MaterialTable;
 use super::near_misses::NearMisses;
 use super::next_rays::{NextRays, RayRow};
 use super::path_state::{PathStateRow, PathStates};
 use super::probe_batch::ProbeBatch;
+use super::seen_lights::SeenLights;
 use super::shading_row::SurfaceLanes;
 use super::shadow_queue::ShadowQueue;
 use super::surface::{SurfaceColumns, chord_length, exit_distance};
@@ -27,14 +28,6 @@ use crate::world::World;
 use glam::Vec3;
 use std::mem::swap;
 use std::ops::Range;
-
-/// Paths of a batch: 16 samples of each pixel of a tile. With fewer, more rows of lanes are half empty
-/// when most paths have ended: with 1024, scenes of a few spheres take 5 % longer, with 512 12 %.
-pub const BATCH_PATHS: usize = 4096;
-
-/// Rows of a column: room for a partial row of lanes, and such that columns do not all start in the
-/// same sets of the first-level cache.
-pub(super) const ROWS: usize = BATCH_PATHS + MAX_LANES;
 
 /// Capacity of a path's interior list.
 const MAX_NESTING: usize = 16;
@@ -233,10 +226,10 @@ impl Workspace {
         self.coverage.get(row).copied().unwrap_or(1.0)
     }
 
-    /// Returns the same of rows that hit something, unless all are 1.
-    #[inline]
-    pub(super) fn coverages(&self, rows: Range<usize>) -> Option<&[f32]> {
-        self.coverage.get(rows)
+    /// Records the features of camera rays, if they are wanted.
+    pub(super) fn record_features(&mut self, world: &World) {
+        let Self { rays, hits, surface, coverage, .. } = self;
+        self.features.record(world, &hits.sphere[..rays.len()], &surface.facing, coverage);
     }
 
     /// Returns the throughput of what is behind all bodies on the ray in a row: 0 if the ray ends before.

@@ -175,6 +175,15 @@ impl Materials {
         self.ids.get(row as usize).copied().unwrap_or_default()
     }
 
+    /// Calls a visitor for every kind of material except glass.
+    pub fn for_each_kind(&self, visitor: &mut impl KindVisitor) {
+        visitor.visit(MaterialKind::Lambertian, |id| self.lambertian[id.row()]);
+        visitor.visit(MaterialKind::Conductor, |id| self.conductor[id.row()]);
+        visitor.visit(MaterialKind::Plastic, |id| self.plastic[id.row()]);
+        visitor.visit(MaterialKind::Reflective, |id| self.reflective[id.row()]);
+        visitor.visit(MaterialKind::Emitter, |id| self.emitter[id.row()].surface());
+    }
+
     fn add(&mut self, material: &Material) -> MaterialId {
         match *material {
             Material::Lambertian { color } => {
@@ -210,6 +219,12 @@ impl Materials {
             Material::Translucent { ref surface, .. } => self.add(surface),
         }
     }
+}
+
+/// A visitor of the kinds of materials.
+pub trait KindVisitor {
+    /// Visits one kind, whose materials `table` returns.
+    fn visit<M: super::Material>(&mut self, kind: MaterialKind, table: impl Fn(MaterialId) -> M);
 }
 
 /// A mirror, where the density of its facets would overflow single precision.

@@ -15,7 +15,7 @@ mod params;
 pub mod plastic;
 pub mod reflective;
 
-pub use materials::{MaterialId, MaterialKind, Materials};
+pub use materials::{KindVisitor, MaterialId, MaterialKind, Materials};
 pub use params::{BroadcastParams, GatheredParams, Params, floats};
 
 use crate::color::Rgb;

@@ -1,9 +1,9 @@
 //! The bodies of a scene other than spheres, in world space.
 
 use super::appearance::{Colors, Column};
-use super::{Appearance, Materials, Transform, World};
+use super::{Appearance, Transform};
 use crate::bodies::BodyTrees;
-use crate::body_rows::{BodyKind, BodyRow, BodyRows};
+use crate::body_rows::BodyKind;
 use crate::body_tree::{BodyTree, Shape};
 use crate::bvh::Tree;
 use crate::bvh::builders::Builder;
@@ -11,7 +11,7 @@ use crate::capsules::Capsule;
 use crate::cones::Cone;
 use crate::ellipsoids::Ellipsoid;
 use crate::scene::{PlacedBodies, Rgb, Scene};
-use crate::shade::MaterialKind;
+use crate::shade::Materials;
 use spherule_core::internals::triangles::Triangle;
 use std::borrow::Cow;
 
@@ -105,7 +105,7 @@ impl OtherBodies {
     }
 
     /// Joins the bodies that the camera sees with the spheres of a tree.
-    fn seen<'a>(&'a self, tree: Tree<'a>) -> BodyTrees<'a> {
+    pub(super) fn seen<'a>(&'a self, tree: Tree<'a>) -> BodyTrees<'a> {
         BodyTrees {
             tree,
             capsules: Some(self.sticks.seen()),
@@ -116,7 +116,7 @@ impl OtherBodies {
     }
 
     /// The rows among all of the bodies of a kind that the camera sees, if these are fewer.
-    fn rows_of_seen(&self, kind: BodyKind) -> Option<&[u32]> {
+    pub(super) fn rows_of_seen(&self, kind: BodyKind) -> Option<&[u32]> {
         match kind {
             BodyKind::Sphere => None,
             BodyKind::Capsule => self.sticks.rows_of_seen(),
@@ -145,63 +145,6 @@ fn placed<B: PlacedBodies>(
         scene.slices.iter().any(|slice| slice.hides(middle))
     };
     WorldBodies::build(&items, bodies.len(), is_hidden)
-}
-
-impl World {
-    /// Returns all bodies.
-    #[inline(always)]
-    pub fn trees(&self) -> BodyTrees<'_> {
-        self.others.trees(Tree { bvh: &self.bvh, spheres: &self.spheres })
-    }
-
-    /// Returns the bodies that the camera sees.
-    pub(crate) fn visible_trees(&self) -> BodyTrees<'_> {
-        let visible = self.camera_visible.as_ref();
-        let (bvh, spheres) =
-            visible.map_or((&self.bvh, &self.spheres), |visible| (&visible.bvh, &visible.spheres));
-        self.others.seen(Tree { bvh, spheres })
-    }
-
-    /// Returns the row among all bodies of a row of [`World::visible_trees`].
-    pub(crate) fn row_of_visible(&self, body: BodyRow) -> BodyRow {
-        let rows = match body.kind {
-            BodyKind::Sphere => self.camera_visible.as_ref().map(|visible| &*visible.row),
-            kind => self.others.rows_of_seen(kind),
-        };
-        BodyRow { row: rows.map_or(body.row, |rows| rows[body.row] as usize), ..body }
-    }
-
-    /// Returns the numbers of hits on bodies.
-    #[inline(always)]
-    pub(crate) fn body_rows(&self) -> BodyRows {
-        self.trees().rows()
-    }
-
-    /// Returns the number of hits on bodies, of which each half of a stick is one.
-    pub fn body_count(&self) -> usize {
-        self.body_rows().all_hits()
-    }
-
-    /// Returns whether there are bodies other than spheres.
-    #[inline(always)]
-    pub fn has_other_bodies(&self) -> bool {
-        self.trees().other_kinds().next().is_some()
-    }
-
-    /// Returns the body of a hit; `None` for the ground, and for none.
-    #[inline(always)]
-    pub fn body(&self, hit: u32) -> Option<BodyRow> {
-        self.body_rows().row(hit)
-    }
-
-    /// Returns how many bodies of a kind have each kind of material, in the order of [`MaterialKind::ALL`].
-    pub(super) fn count_materials(&self, kind: BodyKind) -> [u64; MaterialKind::COUNT] {
-        let (rows, mut counts) = (self.body_rows(), [0; MaterialKind::COUNT]);
-        for hit in (rows.first(kind)..).step_by(kind.hits()).take(rows.count(kind)) {
-            counts[self.appearance.material.row(hit).kind() as usize] += 1;
-        }
-        counts
-    }
 }
 
 /// Appends rows for bodies that are no spheres to the appearance of `spheres` spheres.

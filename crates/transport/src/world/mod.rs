@@ -7,6 +7,7 @@
 
 mod appearance;
 mod bodies;
+mod build;
 mod camera;
 mod camera_visible;
 mod caustics;
@@ -14,7 +15,10 @@ mod census;
 mod check;
 mod cut;
 mod device;
+mod device_tables;
 mod environment;
+mod error;
+mod features;
 mod fit;
 pub mod framing;
 mod ground;
@@ -33,17 +37,18 @@ pub use caustics::CausticCasters;
 pub(crate) use caustics::{
     Caster, CausticHit, CausticPath, CausticQuery, CausticSample, CausticSource,
 };
-pub use census::Features;
 pub use cut::{Cut, Span};
-pub use device::{
+pub use device::{DeviceIntegrator, DeviceJob, DevicePath, DevicePaths, DevicePixel, DevicePixels};
+pub use device_tables::{
     DeviceCaster, DeviceCasterNode, DeviceCaustics, DeviceEmitter, DeviceIntegration,
-    DeviceIntegrator, DeviceJob, DeviceLightChoice, DeviceLightNode, DeviceLightTree, DeviceLights,
-    DevicePath, DevicePaths, DevicePicture, DevicePixel, DevicePixels, DevicePoint, DeviceRoulette,
-    DeviceSky, DeviceSkyPart, DeviceSun,
+    DeviceLightChoice, DeviceLightNode, DeviceLightTree, DeviceLights, DevicePicture, DevicePoint,
+    DeviceRoulette, DeviceSky, DeviceSkyPart, DeviceSun,
 };
 pub use environment::{
     Environment, Irradiance, PartBounds, Picture, Radiance, SkyLight, SkySamples,
 };
+pub use error::WorldError;
+pub use features::Features;
 pub use fit::Placement;
 pub use ground::Ground;
 pub(crate) use light_images::{LightImage, LightImages, SeenLight};
@@ -55,22 +60,15 @@ pub use parts::{OmittedSpheres, Parts};
 pub use transform::Transform;
 pub use visibility::Visibility;
 
-use crate::body_rows::{BodyKind, BodyRows};
-use crate::bvh::builders::Builder;
+use crate::bodies::BodyTrees;
+use crate::body_rows::{BodyKind, BodyRow, BodyRows};
 use crate::bvh::{Bvh, Tree};
-use crate::memory::Shortage;
 use crate::ray::{GROUND, MISS};
-use crate::scene::{self, Background, Footprint, Rgb, Scene};
-use crate::settings::{InvalidSetting, Settings};
+use crate::scene::Rgb;
 use crate::shade::{MaterialId, MaterialKind, Materials};
 use crate::spheres::Spheres;
 use crate::translucency::OpticalDepth;
-use lights::EmissiveSpheres;
-use std::borrow::Cow;
 use std::sync::Arc;
-
-/// Approximate number of rays per sample, with bounces and shadow rays, for choosing the tree builder.
-const RAYS_PER_SAMPLE: u64 = 4;
 
 /// All data that a render reads, immutable.
 #[derive(Clone, Debug)]
@@ -129,45 +127,6 @@ pub struct World {
     pub features: Features,
 }
 
-/// Reasons why a scene cannot be rendered.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum WorldError {
-    /// Rows are 32-bit numbers, a few of which are reserved.
-    #[error("too many spheres: {0}, but at most {max} fit; render a part of them", max = Spheres::MAX)]
-    TooManySpheres(usize),
-    /// Not enough memory for the columns and the construction of the tree.
-    #[error("{0} spheres need {1}; render fewer of them")]
-    Memory(usize, Shortage),
-    /// Not enough memory for the light distribution of an environment map.
-    #[error("the environment's picture needs {0}; use a smaller one")]
-    Environment(Shortage),
-    /// A glass sphere is cut; caps are opaque.
-    #[error(
-        "a slice cuts sphere {0}, which is of glass, but flat caps are opaque; use the mode remove or hide, or another material"
-    )]
-    Glass(u32),
-    /// A fitted camera without spheres.
-    #[error(
-        "the camera has nothing to frame: the scene has no spheres, or slices cut all of them away; give it spheres, or give the camera `eye` and `target`"
-    )]
-    NothingToFit,
-    /// The camera is closer to its target than double precision resolves, or similar.
-    #[error("the camera at {eye:?} sees nothing: {why}")]
-    Camera {
-        /// Position in the scene's coordinates.
-        eye: [f64; 3],
-        /// The reason, and how to fix it.
-        why: &'static str,
-    },
-    /// A setting is out of range.
-    #[error(transparent)]
-    Setting(#[from] InvalidSetting),
-    /// A row of a column is invalid; scenes from files are checked before.
-    #[error("{0}")]
-    Invalid(String),
-}
-
 impl World {
     /// Returns center and radius of a sphere in the user's coordinates, by its row in [`World::spheres`].
     ///
@@ -178,120 +137,69 @@ impl World {
         (self.transform.user_point(center), radius / self.transform.scale)
     }
 
-    /// Builds the world, with the tree builder that suits its settings.
-    ///
-    /// Spheres that vanish in single precision relative to the largest coordinate (a radius below about
-    /// 1e-45 of it) are omitted; [`Features::vanished`] counts them.
-    ///
-    /// # Errors
-    /// Too many spheres, or too many for the available memory; a camera that frames nothing,
-    /// or rows that no scene file can contain: columns of different lengths, values that are not
-    /// finite, materials that do not exist.
-    pub fn build(scene: &Scene) -> Result<Self, WorldError> {
-        let Settings { width, height, spp, .. } = scene.settings;
-        let samples = u64::from(width) * u64::from(height) * u64::from(spp);
-        Self::build_with(scene, Self::builder(scene.spheres.len(), samples))
+    /// Returns all bodies.
+    #[inline(always)]
+    pub fn trees(&self) -> BodyTrees<'_> {
+        self.others.trees(Tree { bvh: &self.bvh, spheres: &self.spheres })
     }
 
-    /// Returns the tree builder that suits a render of this many spheres and samples, summed over all
-    /// pixels.
-    pub fn builder(spheres: usize, samples: u64) -> Builder {
-        Builder::for_rays(spheres, samples.saturating_mul(RAYS_PER_SAMPLE))
+    /// Returns the bodies that the camera sees.
+    pub(crate) fn visible_trees(&self) -> BodyTrees<'_> {
+        let visible = self.camera_visible.as_ref();
+        let (bvh, spheres) =
+            visible.map_or((&self.bvh, &self.spheres), |visible| (&visible.bvh, &visible.spheres));
+        self.others.seen(Tree { bvh, spheres })
     }
 
-    /// Builds the world with a certain tree builder, which does not change the picture.
-    ///
-    /// # Errors
-    /// Those of [`World::build`].
-    pub fn build_with(scene: &Scene, builder: Builder) -> Result<Self, WorldError> {
-        let (transform, placement) = check::place(scene, Self::bytes_for(scene))?;
-        Self::assemble(scene, Cow::Borrowed(&scene.spheres), transform, placement, builder)
-    }
-
-    /// Builds the world of a scene whose spheres are not needed afterwards: their memory is freed
-    /// during construction, which halves the peak.
-    ///
-    /// # Errors
-    /// Those of [`World::build`]; after all except [`WorldError::Glass`] the scene still has its
-    /// spheres.
-    pub fn build_taking(scene: &mut Scene, builder: Builder) -> Result<Self, WorldError> {
-        let (transform, placement) = check::place(scene, Self::additional_bytes(scene))?;
-        let spheres = std::mem::take(&mut scene.spheres);
-        Self::assemble(scene, Cow::Owned(spheres), transform, placement, builder)
-    }
-
-    /// Returns the peak bytes that [`World::build_taking`] allocates in addition to those of the scene.
-    pub fn additional_bytes(scene: &Scene) -> u64 {
-        let footprint = Footprint::of(scene);
-        footprint.peak().saturating_sub(footprint.scene())
-    }
-
-    /// Returns the peak bytes that [`World::build_with`] allocates in addition to those of the scene.
-    fn bytes_for(scene: &Scene) -> u64 {
-        let footprint = Footprint::of(scene);
-        let kept = footprint.scene();
-        footprint.peak_keeping(kept).saturating_sub(kept)
-    }
-
-    /// Builds the world from transformed coordinates and placed camera.
-    fn assemble(
-        scene: &Scene,
-        from: Cow<scene::Spheres>,
-        transform: Transform,
-        placement: Placement,
-        builder: Builder,
-    ) -> Result<Self, WorldError> {
-        let parts = Parts::build(scene, from, transform, placement, builder)?;
-        Ok(Self::complete(scene, parts))
-    }
-
-    /// Completes the spheres and their tree by all that follows from them and from the rest of the
-    /// scene.
-    pub fn complete(scene: &Scene, parts: Parts) -> Self {
-        let Parts { transform, placement, spheres, bvh, mut appearance, camera_visible, omitted } =
-            parts;
-        let materials = Materials::build(&scene.materials);
-        let mut scene_bodies = scene.body_rows();
-        // Spheres may be in the world alone.
-        scene_bodies.0[BodyKind::Sphere as usize] = 0;
-        let others = OtherBodies::build(scene, &transform);
-        let trees = others.trees(Tree { bvh: &bvh, spheres: &spheres });
-        bodies::append_appearance(&mut appearance, trees, scene, &materials);
-        let cut = Cut::build(&scene.slices, &transform);
-        let camera = Camera::build(scene, &placement, &transform);
-        let environment = Environment::build(&scene.environment, &scene.look);
-        let ground =
-            scene.ground.as_ref().map(|ground| Ground::build(ground, &transform, &materials));
-        let emissive = EmissiveSpheres::find(&spheres, &cut, &appearance, &materials);
-        let lights = Lights::build(scene, &transform, &spheres, emissive, &environment);
-        let mut world = Self {
-            transform,
-            placement,
-            spheres,
-            appearance,
-            bvh,
-            others,
-            scene_bodies,
-            cut,
-            camera_visible,
-            coincident: Vec::new(),
-            ground,
-            materials,
-            lights,
-            caustic_casters: CausticCasters::default(),
-            light_images: LightImages::default(),
-            environment,
-            camera,
-            device_paths: None,
-            features: Features::default(),
+    /// Returns the row among all bodies of a row of [`World::visible_trees`].
+    pub(crate) fn row_of_visible(&self, body: BodyRow) -> BodyRow {
+        let rows = match body.kind {
+            BodyKind::Sphere => self.camera_visible.as_ref().map(|visible| &*visible.row),
+            kind => self.others.rows_of_seen(kind),
         };
-        world.features = Features::census(&world, omitted);
-        if world.features.translucent {
-            world.coincident = world.spheres.later_of_equals();
+        BodyRow { row: rows.map_or(body.row, |rows| rows[body.row] as usize), ..body }
+    }
+
+    /// Returns the numbers of hits on bodies.
+    #[inline(always)]
+    pub(crate) fn body_rows(&self) -> BodyRows {
+        self.trees().rows()
+    }
+
+    /// Returns the number of hits on bodies, of which each half of a stick is one.
+    pub fn body_count(&self) -> usize {
+        self.body_rows().all_hits()
+    }
+
+    /// Returns whether there are bodies other than spheres.
+    #[inline(always)]
+    pub fn has_other_bodies(&self) -> bool {
+        self.trees().other_kinds().next().is_some()
+    }
+
+    /// Returns the body of a hit; `None` for the ground, and for none.
+    #[inline(always)]
+    pub fn body(&self, hit: u32) -> Option<BodyRow> {
+        self.body_rows().row(hit)
+    }
+
+    /// Returns how many bodies of a kind have each kind of material, in the order of [`MaterialKind::ALL`].
+    pub(super) fn count_materials(&self, kind: BodyKind) -> [u64; MaterialKind::COUNT] {
+        let (rows, mut counts) = (self.body_rows(), [0; MaterialKind::COUNT]);
+        for hit in (rows.first(kind)..).step_by(kind.hits()).take(rows.count(kind)) {
+            counts[self.appearance.material.row(hit).kind() as usize] += 1;
         }
-        world.caustic_casters = CausticCasters::find(&world);
-        world.light_images = LightImages::find(&world);
-        world
+        counts
+    }
+
+    /// Returns the numbers of spheres of its scene that are not in the world.
+    pub fn omitted(&self) -> OmittedSpheres {
+        let features = &self.features;
+        OmittedSpheres {
+            cut_away: features.cut_away,
+            vanished: features.vanished,
+            hidden: features.hidden,
+        }
     }
 
     /// Returns whether slices hide or cut spheres, so that the processor traces all rays.
@@ -318,61 +226,6 @@ impl World {
             return OpticalDepth::NONE;
         }
         self.materials.optical_depth(self.material(hit))
-    }
-
-    /// Returns the same world without its spheres, and without the light of emissive spheres.
-    pub fn without_spheres(&self) -> Self {
-        let mut features = self.features.clone();
-        features.glass_at_camera.clear();
-        Self {
-            transform: self.transform,
-            placement: self.placement,
-            spheres: Spheres::default(),
-            appearance: Appearance::NONE,
-            bvh: Bvh::default(),
-            others: OtherBodies::default(),
-            scene_bodies: BodyRows::default(),
-            cut: Cut::default(),
-            camera_visible: None,
-            coincident: Vec::new(),
-            ground: self.ground,
-            materials: self.materials.clone(),
-            lights: self.lights.without_spheres(&self.environment),
-            caustic_casters: CausticCasters::default(),
-            light_images: LightImages::default(),
-            environment: self.environment.clone(),
-            camera: self.camera,
-            device_paths: None,
-            features,
-        }
-    }
-
-    /// Replaces the camera by that of `scene`, with its picture size; the rest of the scene must be as
-    /// the world was built. Pictures are equal to the last bit to those of a world that is built anew,
-    /// in a small fraction of the time.
-    ///
-    /// Returns false, and changes nothing, if the camera is so far away that the world must be built
-    /// anew.
-    ///
-    /// # Errors
-    /// The camera sees nothing, or has values out of range.
-    pub fn set_camera(&mut self, scene: &Scene) -> Result<bool, WorldError> {
-        check::check_view(scene)?;
-        let pose = fit::pose(scene)?;
-        if !self.transform.suits(&pose) {
-            return Ok(false);
-        }
-        self.camera = Camera::build(scene, &pose, &self.transform);
-        self.placement = pose;
-        self.features = std::mem::take(&mut self.features).with_camera_of(self);
-        self.light_images = LightImages::find(self);
-        Ok(true)
-    }
-
-    /// Replaces the background that the camera sees; the light of the environment does not change.
-    pub fn set_background(&mut self, background: Background) {
-        self.environment.set_background(background);
-        self.light_images = LightImages::find(self);
     }
 
     /// Returns whether paths sample the light that specular spheres pass on: caustics, or emitters that

@@ -3,7 +3,7 @@
 use super::appearance::Appearance;
 use super::fit::{self, Placement};
 use super::spheres::WorldSpheres;
-use super::{CameraVisible, Cut, Materials, Transform, World, WorldError, check, cut};
+use super::{CameraVisible, Cut, Materials, Transform, WorldError, check, cut};
 use crate::bvh::Bvh;
 use crate::bvh::builders::{Builder, build};
 use crate::scene::{self, Pose, Projection, Scene};
@@ -97,17 +97,5 @@ impl Parts {
         vectors.iter().all(|vector| vector.is_finite())
             && lengths.iter().all(|length| length.is_finite())
             && self.transform.is_finite()
-    }
-}
-
-impl World {
-    /// Returns the numbers of spheres of its scene that are not in the world.
-    pub fn omitted(&self) -> OmittedSpheres {
-        let features = &self.features;
-        OmittedSpheres {
-            cut_away: features.cut_away,
-            vanished: features.vanished,
-            hidden: features.hidden,
-        }
     }
 }

@@ -1,7 +1,6 @@
 //! Chains of specular bounces since the last diffuse surface, for the MIS weights of caustics.
 
 use crate::integrator::Job;
-use crate::integrator::light_images;
 use crate::integrator::path_state::PreviousBounce;
 use crate::integrator::workspace::Workspace;
 use crate::ray::{MISS, Rays};
@@ -158,7 +157,7 @@ impl SpecularChain {
     ) -> f32 {
         let Some(casters) = job.casters().filter(|_| image.is_tiny()) else { return 0.0 };
         let ([origin, toward], pixel) = (self.start, work.seen_lights.pixel(path));
-        let pdf = light_images::camera_pdf(job, pixel, origin, toward);
+        let pdf = job.camera_pdf(pixel, origin, toward);
         Self { pdf, ..*self }.weight(casters, reached, Some(1.0))
     }
 

@@ -13,14 +13,14 @@ pub(super) use chain::{ReachedEmitter, mirrored_weight, track_chains, weight};
 pub(super) use queues::CameraSegment;
 
 use super::Job;
-use super::direct_light::power_heuristic;
+use super::columns::BATCH_PATHS;
 use super::material_table::{MaterialsOfKind, gather_bsdfs};
 use super::shading_row::ShadingRow;
 use super::shadow_queue::{self, ShadowRay};
-use super::workspace::{BATCH_PATHS, Workspace};
+use super::workspace::Workspace;
 use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask, set_bits};
 use crate::ray::MISS;
-use crate::sampling::{Bases, LightDraw, next_in_square};
+use crate::sampling::{Bases, LightDraw, next_in_square, power_heuristic};
 use crate::scene::{ConductorFresnel, Rgb};
 use crate::shade::conductor::Conductor;
 use crate::shade::{BroadcastParams, Bsdf, GatheredParams, Material, MaterialId, MaterialKind};

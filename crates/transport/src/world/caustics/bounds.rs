@@ -4,9 +4,10 @@
 //! the estimates that a choice needs. It limits the number of samples, too, so that it need not be exact.
 
 use super::CausticCasters;
+use crate::bvh::Bounds;
 use crate::elementary::cbrtf;
 use crate::ray::MISS;
-use crate::world::World;
+use crate::world::Ground;
 use crate::world::lights::Receiver;
 use glam::{DVec3, UVec3, Vec3};
 use rayon::prelude::*;
@@ -37,9 +38,15 @@ pub(super) struct SampleBounds {
 }
 
 impl SampleBounds {
-    /// Computes the bounds for the surfaces of `world` that are around the specular spheres.
-    pub(super) fn build(casters: &CausticCasters, world: &World) -> Self {
-        let Some((low, high)) = extent(casters, world) else { return Self::default() };
+    /// Computes the bounds for those of all bodies' surfaces, and of the ground, that are around the specular spheres.
+    pub(super) fn build(
+        casters: &CausticCasters,
+        bodies: Option<Bounds>,
+        ground: Option<&Ground>,
+    ) -> Self {
+        let Some((low, high)) = bodies.and_then(|bodies| extent(casters, bodies, ground)) else {
+            return Self::default();
+        };
         let size = high - low;
         let length = cbrtf(size.x * size.y * size.z / CELLS);
         let cells_per_length = 1.0 / length;
@@ -93,16 +100,19 @@ impl SampleBounds {
 }
 
 /// Returns the corners of a box around the surfaces that are around the specular spheres.
-fn extent(casters: &CausticCasters, world: &World) -> Option<(Vec3, Vec3)> {
+fn extent(
+    casters: &CausticCasters,
+    bodies: Bounds,
+    ground: Option<&Ground>,
+) -> Option<(Vec3, Vec3)> {
     let corner =
         |sign: f64| move |caster: &super::Caster| (caster.center + sign * caster.radius).as_vec3();
     let low = casters.casters.iter().map(corner(-1.0)).reduce(Vec3::min)?;
     let high = casters.casters.iter().map(corner(1.0)).reduce(Vec3::max)?;
     let margin = (high - low).max_element() * MARGIN;
     let (low, high) = (low - margin, high + margin);
-    let bodies = world.bvh.bounds()?;
     let (mut least, mut most) = (bodies.low, bodies.high);
-    if let Some(ground) = &world.ground {
+    if let Some(ground) = ground {
         for i in 0..8 {
             let far = |axis: usize| if i >> axis & 1 == 0 { low[axis] } else { high[axis] };
             let corner = DVec3::new(far(0).into(), far(1).into(), far(2).into());
@@ -147,7 +157,7 @@ mod tests {
     #[test]
     fn bounds_of_cells_are_found_at_their_points() {
         let world = World::build(&default_scene(1)).unwrap();
-        let bounds = SampleBounds::build(&world.caustic_casters, &world);
+        let bounds = SampleBounds::build(&world.caustic_casters, world.bvh.bounds(), None);
         let cells = bounds.cells.element_product();
         assert_eq!(cells as usize, bounds.bound.len());
         assert!((CELLS / 4.0..8.0 * CELLS).contains(&(cells as f32)), "{cells}");

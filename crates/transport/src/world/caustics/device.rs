@@ -3,7 +3,7 @@
 use super::estimate::EmitterView;
 use super::tree::CasterTree;
 use super::{CausticCasters, CausticEmitter, CausticSource};
-use crate::world::device::MAX_CASTER_LEVELS;
+use crate::world::device_tables::MAX_CASTER_LEVELS;
 use crate::world::{DeviceCaster, DeviceCasterNode, DeviceCaustics, DeviceEmitter};
 use glam::Vec3;
 

@@ -2,13 +2,11 @@
 //!
 //! Light passes through such a sphere from air to air on a straight chord.
 
+use super::TOUCH_TOLERANCE;
 use crate::ray::MISS;
 use crate::shade::MaterialKind;
 use crate::world::World;
 use glam::Vec3;
-
-/// Overlap, relative to the distance, up to which spheres touch but do not intersect.
-pub(super) const TOUCH_TOLERANCE: f64 = 1e-6;
 
 /// Children of a box.
 const BRANCHES: usize = 16;

@@ -1,5 +1,6 @@
-use super::*;
+use crate::elementary::sincos;
 use crate::scene::Scene;
+use crate::world::World;
 use std::fmt::Write;
 use std::path::Path;
 

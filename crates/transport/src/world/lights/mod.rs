@@ -4,14 +4,15 @@ mod build;
 mod device;
 mod point;
 mod row;
+mod sample;
 mod sampler;
 mod sphere_light;
 mod sun;
 mod tree;
 
 pub use point::Point;
-pub(crate) use row::MAX_MIDDLES;
 pub use row::{LANES, LightLanes, ReceiverRow};
+pub(crate) use sample::MAX_MIDDLES;
 pub(super) use sampler::LightSampler;
 pub use sphere_light::Disc;
 pub use sun::Sun;
@@ -20,7 +21,7 @@ pub(super) use tree::{BRANCHES, Chances, LightBounds, ROOT, Siblings, Tree, WITH
 
 use super::appearance::Appearance;
 use super::environment::{Environment, Picture};
-use super::{Cut, Transform, World};
+use super::{Cut, Transform};
 use crate::ray::MISS;
 use crate::scene::{self, LightChoice, Rgb, Scene};
 use crate::shade::{MaterialKind, Materials};
@@ -190,47 +191,6 @@ impl Lights {
             Light::Sun(index - emitters - points)
         } else {
             Light::Sky(index - sky)
-        }
-    }
-
-    /// Returns light `index` as seen from a point on the surface of sphere `own`; `None` if the point
-    /// is in or on the light: BSDF samples find such light.
-    #[inline]
-    pub fn view<'a>(
-        &'a self,
-        world: &'a World,
-        index: usize,
-        origin: Vec3,
-        own: u32,
-    ) -> Option<LightView<'a>> {
-        match self.light(index) {
-            Light::Emitter(i) if self.emitters[i] == own => None,
-            Light::Emitter(i) => {
-                let row = self.emitters[i] as usize;
-                Disc::new(&world.spheres, row, self.radiance[i], origin, self.reach)
-                    .map(LightView::Disc)
-            }
-            Light::Point(i) => self.points[i].sample(origin).map(LightView::Delta),
-            Light::Sun(i) => Some(LightView::Sun(&self.suns[i])),
-            Light::Sky(part) => {
-                world.environment.picture().map(|picture| LightView::Sky(picture, part))
-            }
-        }
-    }
-
-    /// Samples light `index` once, like [`Lights::view`], but on a shorter path where there is one.
-    #[inline(always)]
-    pub fn sample(
-        &self,
-        world: &World,
-        index: usize,
-        origin: Vec3,
-        own: u32,
-        u: [f32; 2],
-    ) -> Option<LightSample> {
-        match self.light(index) {
-            Light::Sun(i) => Some(self.suns[i].sample(u)),
-            _ => self.view(world, index, origin, own)?.sample(u),
         }
     }
 

@@ -6,17 +6,12 @@ use super::sphere_light::distances;
 use super::{Disc, LightSample, LightView, Lights, Receiver};
 use crate::lanes::{F32x16, F64x8, Lanes, first_lanes, set_bits};
 use crate::ray::MISS;
-use crate::sampling::LightDraw;
 use crate::scene::Rgb;
 use crate::vec3::Vec3;
-use crate::world::{Picture, SkySamples, World};
-use std::ops::Range;
+use crate::world::{Picture, SkySamples};
 
 /// Samples in a row.
 pub const LANES: usize = 16;
-
-/// Maximum number of lights that [`Lights::middle_row`] distinguishes.
-pub(crate) const MAX_MIDDLES: usize = 4;
 
 /// A row of receivers; lane by lane a [`Receiver`].
 #[derive(Clone, Copy, Debug)]
@@ -75,7 +70,7 @@ impl LightLanes {
     /// Samples a part of a picture of the sky in `lanes`, from two random numbers in [0, 1) each. Lanes without
     /// light get no sample.
     #[inline(always)]
-    fn sky(picture: &Picture, part: usize, u: [F32x16; 2], lanes: u32) -> Self {
+    pub(super) fn sky(picture: &Picture, part: usize, u: [F32x16; 2], lanes: u32) -> Self {
         let SkySamples { direction, radiance, pdf, lanes } = picture.sample(part, u, lanes);
         Self {
             weight: radiance.map(|channel| channel / pdf),
@@ -87,7 +82,7 @@ impl LightLanes {
 
     /// Returns a row without samples.
     #[inline(always)]
-    fn dark() -> Self {
+    pub(super) fn dark() -> Self {
         Self::distant(Vec3::splat(0.0, 0.0, 1.0), Rgb::ZERO, 0)
     }
 
@@ -108,7 +103,7 @@ impl LightLanes {
 
     /// Merges with other samples, which replace those in their lanes.
     #[inline(always)]
-    fn or(self, others: &Self) -> Self {
+    pub(super) fn or(self, others: &Self) -> Self {
         if self.lanes == 0 {
             return *others;
         }
@@ -129,7 +124,7 @@ impl LightLanes {
 
     /// Writes samples to lanes.
     #[inline(always)]
-    fn with(mut self, samples: impl Iterator<Item = (usize, LightSample)>) -> Self {
+    pub(super) fn with(mut self, samples: impl Iterator<Item = (usize, LightSample)>) -> Self {
         for (lane, sample) in samples {
             (self.t[lane], self.target[lane]) = (sample.t, sample.target);
             set_lane(&mut self.direction, lane, sample.direction);
@@ -143,7 +138,7 @@ impl LightLanes {
 
     /// Divides weights, and multiplies densities, by the probabilities of the choices.
     #[inline(always)]
-    fn chosen(self, probability: F32x16) -> Self {
+    pub(super) fn chosen(self, probability: F32x16) -> Self {
         let weight = self.weight.map(|channel| channel / probability);
         Self { weight, pdf: self.pdf * probability, ..self }
     }
@@ -162,103 +157,6 @@ fn every(color: Rgb) -> Vec3<F32x16> {
 }
 
 impl Lights {
-    /// Samples one light for each of the receivers in `lanes`, from a set of random numbers for each:
-    /// [`Lights::choose`] and [`Lights::sample`]. Weights and densities include the probability of the
-    /// choice.
-    #[inline(never)]
-    pub fn sample_row(
-        &self,
-        world: &World,
-        at: &ReceiverRow,
-        numbers: [F32x16; 4],
-        lanes: u32,
-    ) -> LightLanes {
-        let [u, v, ..] = numbers;
-        if let Some(sun) = self.single_sun() {
-            return sun.sample_row([u, v], lanes);
-        }
-        let draw = || LightDraw::light_row(numbers);
-        let (light, probability) = match &self.sampler {
-            LightSampler::None => return LightLanes::dark(),
-            LightSampler::Single => {
-                return self.sample_lights(world, at, &[0; LANES], lanes, [u, v]);
-            }
-            LightSampler::Tree(tree) => tree.choose_row(at, draw(), lanes),
-            LightSampler::Table(_) => self.choose_each(at, draw()),
-        };
-        let samples = self.sample_lights(world, at, &light, lanes, [u, v]);
-        samples.chosen(F32x16::new(probability))
-    }
-
-    /// Returns the light that comes from the middle of a light, without chance: from light number `index` if there are
-    /// at most [`MAX_MIDDLES`], apart from the environment's picture; otherwise from one that stands for a share of
-    /// `1 / MAX_MIDDLES` of the light at each receiver.
-    #[inline(never)]
-    pub(crate) fn middle_row(
-        &self,
-        world: &World,
-        at: &ReceiverRow,
-        index: usize,
-        lanes: u32,
-    ) -> LightLanes {
-        let (count, middle) = (self.count_without_sky(), [F32x16::splat(0.0); 2]);
-        if count <= MAX_MIDDLES {
-            return self.sample_lights(world, at, &[index as u32; LANES], lanes, middle);
-        }
-        let draw = [F64x8::splat((index as f64 + 0.5) / MAX_MIDDLES as f64); 2];
-        let (light, probability) = match &self.sampler {
-            LightSampler::Tree(tree) => tree.choose_row(at, draw, lanes),
-            _ => self.choose_each(at, draw),
-        };
-        let others = set_bits(lanes).filter(|&lane| (light[lane] as usize) < count);
-        let lanes = others.fold(0, |lanes, lane| lanes | 1 << lane);
-        let samples = self.sample_lights(world, at, &light, lanes, middle);
-        samples.chosen(F32x16::new(probability) * F32x16::splat(MAX_MIDDLES as f32))
-    }
-
-    /// Samples the lights that were chosen for the receivers in `lanes`.
-    #[inline(never)]
-    fn sample_lights(
-        &self,
-        world: &World,
-        at: &ReceiverRow,
-        light: &[u32; LANES],
-        lanes: u32,
-        u: [F32x16; 2],
-    ) -> LightLanes {
-        let lanes_of = |kind: Range<usize>| {
-            let chosen = set_bits(lanes).filter(|&lane| kind.contains(&(light[lane] as usize)));
-            chosen.fold(0_u32, |lanes, lane| lanes | 1 << lane)
-        };
-        let emitters = self.emitters.len();
-        let discs = lanes_of(0..emitters);
-        let points = lanes_of(emitters..emitters + self.points.len());
-        let mut row = LightLanes::dark();
-        if discs != 0 {
-            row = self.sample_discs(&world.spheres, at, light, discs, u);
-        }
-        if points != 0 {
-            row = row.or(&self.sample_points(at, light, points, emitters));
-        }
-        let sky = self.len() - self.sky_parts;
-        for part in 0..self.sky_parts {
-            let lanes = lanes_of(sky + part..sky + part + 1);
-            if let Some(picture) = world.environment.picture().filter(|_| lanes != 0) {
-                row = row.or(&LightLanes::sky(picture, part, u, lanes));
-            }
-        }
-        let others = lanes_of(emitters + self.points.len()..sky);
-        if others == 0 {
-            return row;
-        }
-        let [u, v] = u.map(F32x16::to_array);
-        row.with(set_bits(others).filter_map(|lane| {
-            let Receiver { point, own, .. } = at.receiver(lane);
-            let light = light[lane] as usize;
-            Some((lane, self.sample(world, light, point, own, [u[lane], v[lane]])?))
-        }))
-    }
-
     /// Returns the probability with which a part of the environment's picture is sampled, for each of
     /// the receivers in `lanes`.
     #[inline(never)]
@@ -283,7 +181,11 @@ impl Lights {
         each
     }
 
-    fn choose_each(&self, at: &ReceiverRow, draw: [F64x8; 2]) -> ([u32; LANES], [f32; LANES]) {
+    pub(super) fn choose_each(
+        &self,
+        at: &ReceiverRow,
+        draw: [F64x8; 2],
+    ) -> ([u32; LANES], [f32; LANES]) {
         let draw = draw.map(F64x8::to_array);
         let chosen: [(u32, f32); LANES] = std::array::from_fn(|lane| {
             let chosen = self.choose(&at.receiver(lane), draw[lane / 8][lane % 8]);

@@ -6,6 +6,7 @@ use crate::intersect;
 use crate::ray::ExactRay;
 use crate::sampling::statistics::{Grid, random_pairs};
 use crate::scene::{EnvironmentMap, Light as SceneLight, Material, NamedMaterial};
+use crate::world::World;
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -53,7 +54,7 @@ fn emissive_spheres_are_sampled_by_their_density() {
         let toward = DVec3::new(-0.48, 0.6, 0.64);
         let origin = (center - toward * (distance * radius)).as_vec3();
         let at = Receiver { point: origin, normal: toward.as_vec3(), own: MISS };
-        let view = world.lights.view(&world, index, origin, MISS).unwrap();
+        let view = world.light_view(index, origin, MISS).unwrap();
         let to_center = center - origin.as_dvec3();
         let angle = (radius / to_center.length()).asin();
         let axis = to_center.normalize().as_vec3();
@@ -80,7 +81,7 @@ fn suns_are_sampled_by_their_density() {
     let lights = &world.lights;
     let first = lights.emitters.len() + lights.points.len();
     for (i, degrees) in SUNS.into_iter().enumerate() {
-        let view = lights.view(&world, first + i, Vec3::ZERO, MISS).unwrap();
+        let view = world.light_view(first + i, Vec3::ZERO, MISS).unwrap();
         let sun = lights.suns[i];
         let Some(cone) = sun.disc else {
             assert!(degrees == 0.0 && view.sample([0.3; 2]).unwrap().weight == sun.irradiance);
@@ -112,7 +113,7 @@ fn suns_are_sampled_by_their_density() {
 fn the_sky_is_sampled_by_its_density() {
     let world = world();
     let last = world.lights.len() - 1;
-    let view = world.lights.view(&world, last, Vec3::ZERO, MISS).unwrap();
+    let view = world.light_view(last, Vec3::ZERO, MISS).unwrap();
     for sample in random_pairs(1000, 6).filter_map(|u| view.sample(u)) {
         let pdf = sample.pdf.unwrap();
         let picture = world.environment.picture().unwrap();

@@ -1,10 +1,11 @@
 //! Rows of light samples against single samples, to the bit.
 
 use super::*;
-use crate::sampling::{mix, stream, unit_pair};
+use crate::sampling::{LightDraw, mix, stream, unit_pair};
 use crate::spheres::Spheres;
 use crate::vec3::Vec3 as Row3;
 use crate::world::Sun;
+use crate::world::World;
 use glam::{DVec3, Vec3};
 
 fn check(view: &LightView, count: usize, seed: u64) {
@@ -66,7 +67,7 @@ fn assert_rows_equal_lanes(world: &World) {
             [a, b, c, d]
         });
         let columns = std::array::from_fn(|i| F32x16::new(numbers.map(|draw| draw[i])));
-        let row = world.lights.sample_row(world, &at, columns, lanes);
+        let row = world.sample_light_row(&at, columns, lanes);
         assert_eq!(row.close & !row.lanes, 0);
         if world.lights.sky_parts > 0 {
             let index = world.lights.len() - world.lights.sky_parts;
@@ -80,7 +81,7 @@ fn assert_rows_equal_lanes(world: &World) {
             let Receiver { point, own, .. } = each[lane];
             let chosen = world.lights.choose(&each[lane], draw.light);
             let one = chosen.filter(|_| lanes >> lane & 1 == 1).and_then(|(light, chance)| {
-                Some((world.lights.sample(world, light, point, own, draw.point)?, chance))
+                Some((world.sample_light(light, point, own, draw.point)?, chance))
             });
             assert_eq!(one.is_some(), row.lanes >> lane & 1 == 1, "{seed} {lane}");
             let Some((one, chance)) = one else { continue };
