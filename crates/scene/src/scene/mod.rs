@@ -20,6 +20,7 @@ mod material;
 mod measure;
 pub mod particles;
 mod preset;
+mod shown;
 mod slice;
 mod spheres;
 pub(crate) mod write;
@@ -49,6 +50,9 @@ pub use slice::{Slice, SliceMode, SlicePlane};
 pub use spheres::Spheres;
 pub use spherule_particles::{FileError, Place};
 pub use write::{Header, text_without_columns, write, write_as};
+
+use bodies::FileBodies;
+use spherule_core::internals::body_rows::{BodyKind, BodyRows};
 
 /// A whole scene: objects, lights, camera and settings.
 #[derive(Clone, Debug, Default)]
@@ -86,4 +90,45 @@ pub struct Scene {
     /// Warnings for the user: one sentence each, such as how many rows of a particle file were dropped
     /// and why.
     pub warnings: Vec<String>,
+}
+
+impl Scene {
+    /// The bodies of all kinds but spheres, in the order in which they are numbered.
+    #[doc(hidden)]
+    pub fn other_bodies(&self) -> [&dyn BodyColumns; BodyKind::ALL.len() - 1] {
+        [&self.sticks, &self.ellipsoids, &self.cones, &self.triangles]
+    }
+
+    /// The numbers of bodies.
+    #[doc(hidden)]
+    pub fn body_rows(&self) -> BodyRows {
+        let mut rows = BodyRows::default();
+        rows.0[BodyKind::Sphere as usize] = self.spheres.len();
+        self.other_bodies().iter().for_each(|bodies| rows.0[bodies.kind() as usize] = bodies.len());
+        rows
+    }
+
+    /// The same bodies, as files describe them.
+    fn file_bodies(&self) -> [&dyn FileBodies; BodyKind::ALL.len() - 1] {
+        [&self.sticks, &self.ellipsoids, &self.cones, &self.triangles]
+    }
+
+    /// Reads the same bodies from files.
+    fn file_bodies_mut(&mut self) -> [&mut dyn FileBodies; BodyKind::ALL.len() - 1] {
+        [&mut self.sticks, &mut self.ellipsoids, &mut self.cones, &mut self.triangles]
+    }
+
+    /// Appends the same bodies of another scene; `material` gives the row here of a row of its materials.
+    #[doc(hidden)]
+    pub fn append_bodies(&mut self, other: &Self, material: impl Fn(u32) -> u32) {
+        self.sticks.append(other.sticks.clone(), &material);
+        self.ellipsoids.append(other.ellipsoids.clone(), &material);
+        self.cones.append(other.cones.clone(), &material);
+        self.triangles.append(other.triangles.clone(), &material);
+    }
+
+    /// Returns whether there is no body.
+    pub fn is_empty(&self) -> bool {
+        self.spheres.is_empty() && self.other_bodies().iter().all(|bodies| bodies.is_empty())
+    }
 }

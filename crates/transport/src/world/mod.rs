@@ -1,6 +1,6 @@
 //! The world: a scene as kernels read it, in columns and tables, and a census of its features.
 //!
-//! [`World::build`] moves a [`Scene`] to the origin by a multiple of a power of two, scales it by an
+//! [`World::build`] moves a [`Scene`](crate::Scene) to the origin by a multiple of a power of two, scales it by an
 //! exact power of two so that its largest coordinate is about 1 ([`Transform`]), stores it in single
 //! precision, builds the tree and permutes the spheres' columns so that a leaf is a contiguous range.
 //! All errors of a scene are found here or before; rendering cannot fail.

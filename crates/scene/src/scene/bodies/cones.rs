@@ -52,7 +52,7 @@ impl Cones {
     }
 
     /// Moves other cones to the end; `material` gives their rows here.
-    pub(super) fn append(&mut self, mut other: Self, material: impl Fn(u32) -> u32) {
+    pub(in crate::scene) fn append(&mut self, mut other: Self, material: impl Fn(u32) -> u32) {
         self.apex.append(&mut other.apex);
         self.base.append(&mut other.base);
         self.radius.append(&mut other.radius);

@@ -1,5 +1,5 @@
 //! Bodies other than spheres, in columns: one module for each kind says its columns, its keys in scene files, what may be wrong with a
-//! body, and where it is. All else asks the list of the kinds, [`Scene::other_bodies`].
+//! body, and where it is. All else asks the list of the kinds, [`Scene::other_bodies`](super::Scene::other_bodies).
 
 mod cones;
 mod ellipsoids;
@@ -18,9 +18,9 @@ pub(in crate::scene) use triangles::{MeshKeys, TriangleKeys};
 
 use super::file::{Block, Materials, solid_row};
 use super::keys::{Schema, Section};
-use super::{FileError, Rgb, Scene, Slice, SliceMode};
+use super::{FileError, Rgb, Slice, SliceMode};
 use glam::DVec3;
-use spherule_core::internals::body_rows::{BodyKind, BodyRows};
+use spherule_core::internals::body_rows::BodyKind;
 use spherule_core::internals::body_tree::Shape;
 use std::iter::Take;
 
@@ -32,7 +32,7 @@ pub trait BodyColumns {
     /// The name of a column that each body has a row of, and the lengths of all columns, this one first.
     fn lengths(&self) -> (&'static str, Vec<usize>);
 
-    /// Rows of [`Scene::materials`].
+    /// Rows of [`Scene::materials`](super::Scene::materials).
     fn materials(&self) -> &[u32];
 
     /// Factors on the material's color, for each hit of body `row` ([`BodyKind::hits`]).
@@ -57,7 +57,7 @@ pub trait BodyColumns {
         })
     }
 
-    /// Returns whether the bodies stand by themselves: others only join these, and count neither in [`Scene::bounds`] nor as what is cut.
+    /// Returns whether the bodies stand by themselves: others only join these, and count neither in [`Scene::bounds`](super::Scene::bounds) nor as what is cut.
     fn stand_alone(&self) -> bool {
         true
     }
@@ -155,69 +155,6 @@ impl Slice {
             SliceMode::Caps => bodies.depths(row, self)[1] > 0.0,
             SliceMode::Remove | SliceMode::Hide => self.depth(bodies.middle(row)) > 0.0,
         }
-    }
-}
-
-impl Scene {
-    /// The bodies of all kinds but spheres, in the order in which they are numbered.
-    #[doc(hidden)]
-    pub fn other_bodies(&self) -> [&dyn BodyColumns; BodyKind::ALL.len() - 1] {
-        [&self.sticks, &self.ellipsoids, &self.cones, &self.triangles]
-    }
-
-    /// The numbers of bodies.
-    #[doc(hidden)]
-    pub fn body_rows(&self) -> BodyRows {
-        let mut rows = BodyRows::default();
-        rows.0[BodyKind::Sphere as usize] = self.spheres.len();
-        self.other_bodies().iter().for_each(|bodies| rows.0[bodies.kind() as usize] = bodies.len());
-        rows
-    }
-
-    /// The same bodies, as files describe them.
-    pub(super) fn file_bodies(&self) -> [&dyn FileBodies; BodyKind::ALL.len() - 1] {
-        [&self.sticks, &self.ellipsoids, &self.cones, &self.triangles]
-    }
-
-    /// Reads the same bodies from files.
-    pub(super) fn file_bodies_mut(&mut self) -> [&mut dyn FileBodies; BodyKind::ALL.len() - 1] {
-        [&mut self.sticks, &mut self.ellipsoids, &mut self.cones, &mut self.triangles]
-    }
-
-    /// Appends the same bodies of another scene; `material` gives the row here of a row of its materials.
-    #[doc(hidden)]
-    pub fn append_bodies(&mut self, other: &Self, material: impl Fn(u32) -> u32) {
-        self.sticks.append(other.sticks.clone(), &material);
-        self.ellipsoids.append(other.ellipsoids.clone(), &material);
-        self.cones.append(other.cones.clone(), &material);
-        self.triangles.append(other.triangles.clone(), &material);
-    }
-
-    /// Returns the rows of bodies that slices do not remove.
-    #[doc(hidden)]
-    pub fn shown_of<'a>(&'a self, bodies: &'a dyn BodyColumns) -> impl Iterator<Item = usize> + 'a {
-        let dropped = |row| self.slices.iter().any(|slice| slice.drops_body(bodies, row));
-        (0..bodies.len()).filter(move |&row| !dropped(row))
-    }
-
-    /// Returns spheres whose convex hull holds what slices leave.
-    pub fn framed(&self) -> impl Iterator<Item = (DVec3, f64)> {
-        let spheres = self.shown().map(|row| (self.spheres.center(row), self.spheres.radius[row]));
-        let others = self.other_bodies().into_iter();
-        spheres
-            .chain(others.flat_map(|bodies| self.shown_of(bodies).flat_map(|row| bodies.hull(row))))
-    }
-
-    /// Returns spheres whose convex hull holds the same bodies, sliced or not.
-    #[doc(hidden)]
-    pub fn other_hulls(&self) -> impl Iterator<Item = (DVec3, f64)> {
-        let others = self.other_bodies().into_iter();
-        others.flat_map(|bodies| (0..bodies.len()).flat_map(|row| bodies.hull(row)))
-    }
-
-    /// Returns whether there is no body.
-    pub fn is_empty(&self) -> bool {
-        self.spheres.is_empty() && self.other_bodies().iter().all(|bodies| bodies.is_empty())
     }
 }
 

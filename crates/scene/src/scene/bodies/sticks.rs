@@ -56,7 +56,7 @@ impl Sticks {
     }
 
     /// Moves other sticks to the end; `material` gives their rows here.
-    pub(super) fn append(&mut self, mut other: Self, material: impl Fn(u32) -> u32) {
+    pub(in crate::scene) fn append(&mut self, mut other: Self, material: impl Fn(u32) -> u32) {
         self.from.append(&mut other.from);
         self.to.append(&mut other.to);
         self.radius.append(&mut other.radius);

@@ -40,7 +40,7 @@ impl Triangles {
     }
 
     /// Moves other triangles to the end; `material` gives their rows here.
-    pub(super) fn append(&mut self, mut other: Self, material: impl Fn(u32) -> u32) {
+    pub(in crate::scene) fn append(&mut self, mut other: Self, material: impl Fn(u32) -> u32) {
         self.corners.append(&mut other.corners);
         self.material.extend(other.material.into_iter().map(material));
         self.color.append(&mut other.color);

@@ -1,35 +1,14 @@
 //! Sections of a scene file: a table whose keys are known and have a meaning for the section's kind.
 
-use super::value::Value;
+use super::value::{Source, Value};
 use crate::scene::FileError;
 use crate::scene::keys::{Key, Kind, Schema, Section, Visitor};
 use crate::suggest;
 use std::fmt::Debug;
 use std::ops::Range;
-use std::path::Path;
 use std::rc::Rc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
-
-/// The scene file that is being read.
-pub(in crate::scene) struct Source<'a> {
-    /// Path, for messages.
-    pub(in crate::scene) path: &'a Path,
-    pub(in crate::scene) text: &'a str,
-    /// Folder to which paths in the scene are relative.
-    pub(in crate::scene) folder: &'a Path,
-}
-
-impl Source<'_> {
-    /// Returns an error at these bytes.
-    pub(in crate::scene) fn error(
-        &self,
-        span: Range<usize>,
-        message: impl Into<String>,
-    ) -> FileError {
-        FileError::at(self.path, self.text, 1, span, message)
-    }
-}
 
 /// A table of the file whose keys are all in its schema.
 pub(in crate::scene) struct Block<'a> {

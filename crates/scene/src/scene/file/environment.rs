@@ -1,6 +1,7 @@
 //! `[environment]`: radiance of rays that leave the scene.
 
-use super::block::{Block, Source};
+use super::block::Block;
+use super::value::Source;
 use super::value::Value;
 use crate::image::Image;
 use crate::scene::keys::EnvironmentKeys;

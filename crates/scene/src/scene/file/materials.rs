@@ -1,8 +1,8 @@
 //! `[material.NAME]` and `[ground]`: materials.
 
 use super::block::Block;
-use crate::scene::keys::{GroundKeys, Schema, Section};
-use crate::scene::{FileError, Ground, Material, NamedMaterial};
+use crate::scene::keys::{Schema, Section};
+use crate::scene::{FileError, Material, NamedMaterial};
 use crate::suggest;
 use std::collections::HashMap;
 
@@ -72,18 +72,6 @@ pub(super) fn read(root: &Block) -> Result<Materials, FileError> {
     Ok(materials)
 }
 
-/// Reads `[ground]`, if it exists.
-pub(super) fn read_ground(
-    root: &Block,
-    materials: &mut Materials,
-) -> Result<Option<Ground>, FileError> {
-    let Some(block) = root.block(Schema::of::<GroundKeys>())? else { return Ok(None) };
-    let GroundKeys { mut ground, .. } = block.read()?;
-    let refused = ["a dielectric", "an emitter", "translucent"];
-    ground.material = row_but(&block, materials, &refused, ["the ground", "a sphere"])?;
-    Ok(Some(ground))
-}
-
 /// Returns the row of the material that the section of `body` names, neither glass nor an emitter,
 /// which only spheres can be.
 pub(in crate::scene) fn solid_row(
@@ -95,7 +83,7 @@ pub(in crate::scene) fn solid_row(
 }
 
 /// Returns the row of the material that the section of a body names; some it cannot have, and others can.
-fn row_but(
+pub(super) fn row_but(
     block: &Block,
     materials: &mut Materials,
     refused: &[&str],

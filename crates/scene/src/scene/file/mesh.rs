@@ -1,8 +1,9 @@
 //! `[[mesh]]`: triangles of PLY files.
 
-use super::block::{Block, Source};
+use super::block::Block;
 use super::materials::{Materials, solid_row};
 use super::spheres::existing;
+use super::value::Source;
 use crate::memory;
 use crate::scene::bodies::MeshKeys;
 use crate::scene::keys::Schema;

@@ -7,6 +7,7 @@
 
 pub(in crate::scene) mod block;
 mod environment;
+mod ground;
 mod materials;
 mod mesh;
 mod render;
@@ -17,7 +18,7 @@ pub(in crate::scene) mod value;
 pub(in crate::scene) use block::Block;
 pub(in crate::scene) use materials::{Materials, solid_row};
 
-use self::block::Source;
+use self::value::Source;
 use super::keys::{EnvironmentKeys, SECTIONS, Schema};
 use super::particles::{self, Orientation, Particles, ReadOptions, TypeMaterial};
 use super::{
@@ -291,7 +292,7 @@ fn read(source: &Source, root: &Block) -> Result<Scene, FileError> {
         bodies.read(root, &mut materials)?;
     }
     mesh::read(source, root, &mut scene, &mut materials)?;
-    scene.ground = materials::read_ground(root, &mut materials)?;
+    scene.ground = ground::read(root, &mut materials)?;
     scene.materials = materials.into_rows();
     let environment = root.block(Schema::of::<EnvironmentKeys>())?;
     scene.environment = match environment {

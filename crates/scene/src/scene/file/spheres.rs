@@ -1,8 +1,9 @@
 //! `[[sphere]]`, `[[generate]]` and `[[file]]`: the spheres, in this order.
 
-use super::block::{Block, Source};
+use super::block::Block;
 use super::materials::{self, Materials};
 use super::styles;
+use super::value::Source;
 use crate::memory;
 use crate::scene::keys::{FileKeys, GenerateKeys, Schema, SphereKeys, StyleKeys};
 use crate::scene::particles::{self, BondSource, Columns, ParticleStyle, Radii, ReadOptions};

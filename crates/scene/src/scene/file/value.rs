@@ -1,12 +1,32 @@
 //! Values of a scene file: checks of type and range, used by every section.
 
-use super::block::Source;
 use crate::scene::{FileError, Rgb};
 use crate::settings::Limits;
 use crate::{color, suggest};
 use std::ops::Range;
+use std::path::Path;
 use std::str::FromStr;
 use toml::de::{DeTable, DeValue};
+
+/// The scene file that is being read.
+pub(in crate::scene) struct Source<'a> {
+    /// Path, for messages.
+    pub(in crate::scene) path: &'a Path,
+    pub(in crate::scene) text: &'a str,
+    /// Folder to which paths in the scene are relative.
+    pub(in crate::scene) folder: &'a Path,
+}
+
+impl Source<'_> {
+    /// Returns an error at these bytes.
+    pub(in crate::scene) fn error(
+        &self,
+        span: Range<usize>,
+        message: impl Into<String>,
+    ) -> FileError {
+        FileError::at(self.path, self.text, 1, span, message)
+    }
+}
 
 /// A value, its key and its position.
 #[derive(Clone)]

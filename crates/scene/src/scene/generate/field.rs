@@ -1,7 +1,7 @@
 //! Random spheres on a plane.
 
+use super::group::{GenerateError, Group, require, require_radii, reserve_spheres};
 use super::random::Random;
-use super::{GenerateError, Group, require, require_radii, reserve_spheres};
 use crate::scene::{ConductorFresnel, Material, NamedMaterial, Rgb};
 use glam::DVec3;
 

@@ -1,6 +1,6 @@
 //! Equal spheres in rows.
 
-use super::{GenerateError, Group, require, require_radius, reserve_spheres};
+use super::group::{GenerateError, Group, require, require_radius, reserve_spheres};
 use crate::scene::Rgb;
 use glam::DVec3;
 

@@ -1,7 +1,7 @@
 //! A face-centered cubic crystal.
 
+use super::group::{GenerateError, Group, require, require_radius, reserve_spheres};
 use super::random::Random;
-use super::{GenerateError, Group, require, require_radius, reserve_spheres};
 use crate::scene::Rgb;
 use glam::DVec3;
 use std::f64::consts::SQRT_2;

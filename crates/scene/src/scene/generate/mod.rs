@@ -3,6 +3,7 @@
 
 mod field;
 mod grid;
+mod group;
 mod lattice;
 mod random;
 mod show;
@@ -12,25 +13,16 @@ mod weekend;
 
 pub use field::Field;
 pub use grid::Grid;
+pub use group::{GenerateError, Group};
 pub use lattice::Lattice;
 pub use show::{DEFAULT_MIX, default_scene};
 pub use sphereflake::Sphereflake;
 pub use volume::Volume;
 pub use weekend::Weekend;
 
-use super::{NamedMaterial, Spheres};
 use crate::memory;
-use crate::scene::{ColorColumn, Footprint};
-use thiserror::Error;
-
-/// Spheres and their materials.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Group {
-    /// The spheres; materials are rows of `materials`.
-    pub spheres: Spheres,
-    /// Materials; empty if all spheres have one material that the scene chooses.
-    pub materials: Vec<NamedMaterial>,
-}
+use crate::scene::{ColorColumn, Footprint, Spheres};
+use group::require;
 
 /// A generator with its parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,16 +39,6 @@ pub enum Generator {
     Sphereflake(Sphereflake),
     /// The last scene of "Ray Tracing in One Weekend".
     Weekend(Weekend),
-}
-
-/// A parameter that is out of range, or that asks for too many spheres.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("{parameter}: {message}")]
-pub struct GenerateError {
-    /// Name of the parameter.
-    pub parameter: &'static str,
-    /// Requirement that the parameter violates.
-    pub message: String,
 }
 
 impl Generator {
@@ -127,41 +109,6 @@ impl Generator {
             Self::Field(_) | Self::Lattice(_) | Self::Sphereflake(_) | Self::Weekend(_) => "radius",
         }
     }
-}
-
-/// Returns an error unless the condition holds.
-fn require(
-    condition: bool,
-    parameter: &'static str,
-    message: impl Into<String>,
-) -> Result<(), GenerateError> {
-    if condition { Ok(()) } else { Err(GenerateError { parameter, message: message.into() }) }
-}
-
-/// Returns an error unless the radius is finite and more than 0.
-fn require_radius(radius: f64) -> Result<(), GenerateError> {
-    require(radius.is_finite() && radius > 0.0, "radius", "must be finite and more than 0")
-}
-
-/// Returns an error unless the pair is a range of radii.
-fn require_radii([least, greatest]: [f64; 2]) -> Result<(), GenerateError> {
-    let message = "must be [least, greatest], finite, more than 0 and in this order";
-    require(least > 0.0 && least <= greatest && greatest.is_finite(), "radius", message)
-}
-
-/// Reserves memory for `count` spheres, after checking the count.
-fn reserve_spheres(count: u64, parameter: &'static str) -> Result<Spheres, GenerateError> {
-    let most = Spheres::MAX;
-    let message = if count == u64::MAX {
-        format!("asks for more than 1e19 spheres; a scene holds at most {most}")
-    } else {
-        format!("asks for {count} spheres; a scene holds 1 to {most}")
-    };
-    require((1..=most).contains(&count), parameter, message)?;
-    let mut spheres = Spheres::default();
-    let reserved = usize::try_from(count).is_ok_and(|count| spheres.try_reserve(count).is_ok());
-    require(reserved, parameter, format!("asks for {count} spheres, more than memory holds"))?;
-    Ok(spheres)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The sphereflake of the Standard Procedural Databases (Haines, "A Proposal for Standard Graphics
 //! Environments", IEEE Computer Graphics and Applications 1987).
 
-use super::{GenerateError, Group, require_radius, reserve_spheres};
+use super::group::{GenerateError, Group, require_radius, reserve_spheres};
 use crate::elementary;
 use crate::scene::{Rgb, Spheres};
 use glam::{DQuat, DVec3};

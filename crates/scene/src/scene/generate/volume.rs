@@ -1,7 +1,7 @@
 //! Random spheres in a cube.
 
+use super::group::{GenerateError, Group, require, require_radii, reserve_spheres};
 use super::random::Random;
-use super::{GenerateError, Group, require, require_radii, reserve_spheres};
 use crate::elementary::cbrt;
 use crate::scene::Rgb;
 use glam::DVec3;

@@ -1,7 +1,6 @@
 //! Kinds of values of keys: how each is read, written, checked and described.
 
 use super::super::file::value::Value;
-use super::super::write::sections::quoted;
 use crate::color::Map;
 use crate::scene::{Background, FileError, LetterSize, Rgb};
 use crate::settings::Limits;
@@ -469,6 +468,17 @@ impl Kind<Background> for Backdrop {
         let values = format!("`\"sky\"`, `\"transparent\"`, or {}", words.values);
         Words { values, ..words }
     }
+}
+
+/// A text as a basic string of TOML, which serves as a key too: `toml` itself would write some
+/// texts in several lines, which no key may have.
+pub(in crate::scene) fn quoted(text: &str) -> String {
+    let escape = |letter: char| match letter {
+        '"' | '\\' => format!("\\{letter}"),
+        _ if letter.is_control() => format!("\\u{:04X}", u32::from(letter)),
+        _ => letter.to_string(),
+    };
+    format!("\"{}\"", text.chars().map(escape).collect::<String>())
 }
 
 #[cfg(test)]

@@ -4,21 +4,22 @@
 //! visitor reads a section from a file (`file/block.rs`), others write it, check one that was built in
 //! code, and list its keys (`schema.rs`), for messages, the manual and the types of Python.
 
+mod check;
 mod kinds;
 mod schema;
+mod shared;
 mod table;
 
+pub use check::{check_camera, check_sections};
 pub(in crate::scene) use kinds::Str::Path;
 pub(in crate::scene) use kinds::Triple::Point;
-pub(in crate::scene) use kinds::{Kind, List, Optional, Quaternion};
+pub(in crate::scene) use kinds::{Kind, List, Optional, Quaternion, quoted};
 pub(in crate::scene) use schema::Schema;
+pub(in crate::scene) use shared::{RADIUS, color, solid};
 pub(in crate::scene) use table::{
-    EnvironmentKeys, FileKeys, GenerateKeys, GroundKeys, RADIUS, SECTIONS, SphereKeys, StyleKeys,
-    color, solid,
+    EnvironmentKeys, FileKeys, GenerateKeys, GroundKeys, SECTIONS, SphereKeys, StyleKeys,
 };
 
-use super::write::sections::quoted;
-use super::{Camera, Light, NamedMaterial, Scene};
 use std::fmt::Debug;
 
 /// A section of a scene file.
@@ -99,26 +100,6 @@ impl Visitor for Writer {
     }
 }
 
-/// Checks that values are in range.
-struct Checker<F> {
-    /// The words for the key of a name.
-    whose: F,
-    result: Result<(), String>,
-}
-
-impl<F: Fn(&str) -> String> Visitor for Checker<F> {
-    fn visit<T: Debug>(&mut self, key: Key, kind: impl Kind<T>, value: &mut T) {
-        self.check(key.name, kind, value);
-    }
-
-    fn check<T: Debug>(&mut self, name: &str, kind: impl Kind<T>, value: &T) {
-        if self.result.is_ok() && !kind.contains(value) {
-            let (whose, value, range) = ((self.whose)(name), kind.brief(value), kind.words().range);
-            self.result = Err(format!("{whose} is {value}, but must be {range}"));
-        }
-    }
-}
-
 /// Returns the keys of a section as text, without the section's name.
 pub(in crate::scene) fn text(section: &impl Section) -> String {
     let mut writer = Writer(String::new());
@@ -129,52 +110,6 @@ pub(in crate::scene) fn text(section: &impl Section) -> String {
 /// Returns a section as text.
 pub(in crate::scene) fn section_text<T: Section>(section: &T) -> String {
     format!("{}\n{}\n", T::NAME, text(section))
-}
-
-/// Checks a section; `whose` puts the section into words, as in "the camera's `KEY`".
-fn check(section: &impl Section, whose: impl Fn(&str) -> String) -> Result<(), String> {
-    let mut checker = Checker { whose, result: Ok(()) };
-    section.clone().visit(&mut checker);
-    checker.result
-}
-
-/// Checks the ranges of a camera that was built in code.
-///
-/// # Errors
-///
-/// The message says what is out of range.
-pub fn check_camera(camera: &Camera) -> Result<(), String> {
-    check(camera, |key| format!("the camera's `{key}`"))
-}
-
-/// Checks the ranges of all sections of a scene that was built in code, but for settings, bodies and
-/// annotations.
-///
-/// # Errors
-///
-/// The message says what is out of range.
-pub fn check_sections(scene: &Scene) -> Result<(), String> {
-    check_camera(&scene.camera)?;
-    for NamedMaterial { name, material } in &scene.materials {
-        check(material, |key| format!("`{key}` of the material \"{name}\""))?;
-    }
-    for light in &scene.lights {
-        let whose = match light {
-            Light::Sun { .. } => "a sun",
-            Light::Point { .. } => "a point light",
-        };
-        check(light, |key| format!("the `{key}` of {whose}"))?;
-    }
-    for slice in &scene.slices {
-        check(slice, |key| format!("the `{key}` of a slice"))?;
-    }
-    let environment =
-        EnvironmentKeys { environment: scene.environment.clone(), file: String::new() };
-    check(&environment, |key| format!("the environment's `{key}`"))?;
-    if let Some(ground) = scene.ground.clone() {
-        check(&GroundKeys { ground, material: None }, |key| format!("the ground's `{key}`"))?;
-    }
-    check(&scene.look, |key| format!("the look's `{key}`"))
 }
 
 #[cfg(test)]

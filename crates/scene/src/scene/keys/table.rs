@@ -1,11 +1,12 @@
 //! The table of the keys of scene files, but for `[render]`, whose keys are those of
 //! [`SETTINGS`](crate::settings::SETTINGS).
 
-use super::kinds::Str::{Name, Path, Text};
+use super::kinds::Str::{Path, Text};
 use super::kinds::Triple::{Direction, Point, Vector};
 use super::kinds::{
     Backdrop, Entries, Flag, Letters, List, MapName, Optional, Points, Whole, Word,
 };
+use super::shared::{self, RADIUS};
 use super::{Schema, Section, Visitor, key};
 use crate::color::{Map, Range, Scale, Spacing};
 use crate::image::Image;
@@ -386,11 +387,6 @@ impl Section for EnvironmentKeys {
     }
 }
 
-/// Visits the key of a material, whose name is in quotes.
-fn material<V: Visitor>(keys: &mut V, name: &mut Option<String>, help: &'static str) {
-    keys.visit(key("material", help).or("`default`"), Optional(Name), name);
-}
-
 /// `[ground]`.
 #[derive(Clone)]
 pub(in crate::scene) struct GroundKeys {
@@ -413,7 +409,7 @@ impl Section for GroundKeys {
         let help = "signed distance from the origin along the normal";
         keys.visit(key("height", help), Any, height);
         let help = "material; neither a dielectric nor an emitter";
-        material(keys, &mut self.material, help);
+        shared::material(keys, &mut self.material, help);
     }
 }
 
@@ -568,16 +564,6 @@ fn conductor<V: Visitor>(keys: &mut V, fresnel: &mut ConductorFresnel, help: &'s
     }
 }
 
-/// Visits the key of the material of a body that is no sphere.
-pub(in crate::scene) fn solid<V: Visitor>(keys: &mut V, name: &mut Option<String>) {
-    material(keys, name, "material, not glass and not an emitter");
-}
-
-/// Visits the key of a body's color.
-pub(in crate::scene) fn color<V: Visitor>(keys: &mut V, color: &mut Rgb) {
-    keys.visit(key("color", "factor for the material's color"), Share, color);
-}
-
 /// `[[sphere]]`.
 #[derive(Clone)]
 pub(in crate::scene) struct SphereKeys {
@@ -586,9 +572,6 @@ pub(in crate::scene) struct SphereKeys {
     pub(in crate::scene) material: Option<String>,
     pub(in crate::scene) color: Rgb,
 }
-
-/// The advice for a missing radius.
-pub(in crate::scene) const RADIUS: &str = "radius = a number greater than 0";
 
 impl Section for SphereKeys {
     const NAME: &'static str = "[[sphere]]";
@@ -599,8 +582,8 @@ impl Section for SphereKeys {
         let Self { center, radius, material, color } = self;
         keys.visit(key("center", "center").required("center = [x, y, z]"), Point, center);
         keys.visit(key("radius", "radius").required(RADIUS), Positive, radius);
-        self::material(keys, material, "material");
-        self::color(keys, color);
+        shared::material(keys, material, "material");
+        shared::color(keys, color);
     }
 }
 
@@ -681,7 +664,7 @@ impl Section for GenerateKeys {
             }
             Generator::Weekend(Weekend) => return,
         }
-        self::material(keys, material, "material of all spheres; not with `mix`");
+        shared::material(keys, material, "material of all spheres; not with `mix`");
     }
 }
 
@@ -711,7 +694,7 @@ impl Section for FileKeys {
         keys.visit(key("format", "see below").or("detected from the content"), formats, format);
         let help = "file that names the particles of a trajectory";
         keys.visit(key("topology", help), Optional(Path), topology);
-        self::material(keys, material, "material of spheres without one in the file");
+        shared::material(keys, material, "material of spheres without one in the file");
         let help = "radius of spheres without one in the file, in the scene's unit; overrides the \
                     elements' radii";
         let default = "the element's, or half of the mean spacing, with a warning";

@@ -1,7 +1,8 @@
 //! Particles at the boundary of a periodic cell: the cell is completed with the images of particles on its faces, and bonds that
 //! leave it end at images, in the middle, or are not drawn.
 
-use super::polyhedra::{Coordination, Polyhedron};
+use super::contents::{Polyhedron, Stub};
+use super::polyhedra::Coordination;
 use super::{Particles, PeriodicError};
 use crate::memory;
 use crate::scene::Spheres;
@@ -46,23 +47,6 @@ pub struct Boundary {
     pub complete: Option<bool>,
     /// The treatment of bonds that leave the cell; `None` for molecules in a completed cell, and else for halves.
     pub outside: Option<Outside>,
-}
-
-/// Bodies that the boundary of the cell and polyhedra add to those of particles.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct AddedBodies {
-    /// Halves of bonds that leave what is drawn.
-    pub(super) stubs: Vec<Stub>,
-    pub(super) polyhedra: Vec<Polyhedron>,
-}
-
-/// The half of a bond that leaves what is drawn.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Stub {
-    /// The particle at its end.
-    pub(super) row: u32,
-    /// The vector from there to the middle of the bond.
-    pub(super) half: DVec3,
 }
 
 impl Particles {

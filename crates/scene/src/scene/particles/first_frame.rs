@@ -5,26 +5,11 @@
 //! the first frame of the file that has particles, whichever frames are drawn, and before any are selected.
 
 use super::{
-    ArrowSizes, ArrowStyle, Frames, OpenFile, Orientation, ParticleFrame, Particles, ReadOptions,
+    ArrowStyle, FirstFrame, Frames, OpenFile, Orientation, ParticleFrame, Particles, ReadOptions,
     SharedNames, of_frame, of_frame_in, read_frame_after,
 };
 use crate::scene::FileError;
 use std::path::Path;
-
-/// The choices that all frames of a file with several have in common.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FirstFrame {
-    /// The orientation of the first frame.
-    pub orientation: Orientation,
-    /// Half of the mean spacing in the first frame, if radii are guessed by it.
-    pub guessed_radius: Option<f64>,
-    /// Number of particles in the first frame, on which the number of samples depends.
-    pub spheres: usize,
-    /// The sizes of arrows in the first frame; `None` if none are asked for, or if it has no vectors.
-    pub arrow_sizes: Option<ArrowSizes>,
-    /// The length from which arrows may be shortened; `None` as the sizes.
-    pub arrow_limit: Option<f64>,
-}
 
 impl FirstFrame {
     /// Finds the choices by the particles of the first frame that has some, before any are selected; `arrows` are those

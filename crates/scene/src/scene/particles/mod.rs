@@ -3,7 +3,9 @@
 //! The package `spherule-particles` reads files into a [`ParticleFrame`]; here it becomes [`Particles`],
 //! whose spheres have radii and colors.
 
+mod arrows;
 mod boundary;
+mod contents;
 mod ellipsoids;
 mod first_frame;
 mod model;
@@ -15,15 +17,17 @@ mod select;
 mod spheres;
 mod style;
 
-pub use boundary::{AddedBodies, Boundary, Outside};
-pub use first_frame::{FirstFrame, TrajectoryReader};
+pub use arrows::{ArrowCentering, ArrowSizes, Arrows, VectorColumns};
+pub use boundary::{Boundary, Outside};
+pub use contents::{AddedBodies, FirstFrame, Particles};
+pub use first_frame::TrajectoryReader;
 pub use model::Model;
 pub use orientation::{Orientation, UpReason};
 pub use periodic::PeriodicError;
 pub use polyhedra::{Coordination, Polyhedra};
 pub use radii::accept_radii_expression;
 pub use select::{Fault, MoleculeCensus, Selection};
-pub use spheres::Particles;
+pub use spheres::{of_frame, of_frame_in};
 pub use spherule_particles::{
     AlignBy, BondRules, BondSource, Bonds, Cell, Codes, Columns, Element, Format, FrameChoice,
     FrameCount, Frames, Kind, Kinds, LengthUnit, NumberColumn, OpenFile, ParticleFrame, Radii,
@@ -31,10 +35,9 @@ pub use spherule_particles::{
     read_frame, read_frame_after,
 };
 pub use style::{
-    Applied, ArrowCentering, ArrowSizes, ArrowStyle, Arrows, Category, ColorEnd, ColorEnds,
-    Coloring, ColumnColors, ColumnSummary, ColumnValues, ElementColors, GHOST, Legend,
-    NumberColors, Opacity, PROPERTIES, ParticleStyle, Properties, SelectedStyle, SharedColors,
-    TypeMaterial, TypeStyle, VectorColumns,
+    Applied, ArrowStyle, Category, ColorEnd, ColorEnds, Coloring, ColumnColors, ColumnSummary,
+    ColumnValues, ElementColors, GHOST, Legend, NumberColors, Opacity, PROPERTIES, ParticleStyle,
+    Properties, SelectedStyle, SharedColors, TypeMaterial, TypeStyle,
 };
 
 use super::FileError;
@@ -48,33 +51,6 @@ use std::path::Path;
 /// The file cannot be read, is cut off, or holds something that is not a particle.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Particles, FileError> {
     TrajectoryReader::default().read(path, options, None)
-}
-
-/// Converts a frame that was read from `path` to spheres, ignoring the options' choice of a frame.
-///
-/// # Errors
-///
-/// It holds no particles, or lacks the radii that are asked for.
-pub fn of_frame(
-    path: &Path,
-    frame: ParticleFrame,
-    options: &ReadOptions,
-) -> Result<Particles, FileError> {
-    of_frame_in(path, frame, options, None)
-}
-
-/// Converts a frame to spheres as [`of_frame`], with the choices by the first frame, if there are several.
-///
-/// # Errors
-///
-/// The same.
-pub fn of_frame_in(
-    path: &Path,
-    frame: ParticleFrame,
-    options: &ReadOptions,
-    first_frame: Option<FirstFrame>,
-) -> Result<Particles, FileError> {
-    spheres::spheres(path, frame, options, first_frame)
 }
 
 #[cfg(test)]

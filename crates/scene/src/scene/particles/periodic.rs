@@ -1,9 +1,6 @@
 //! Periodic particles: wrapping into the cell, and replication of the cell.
 
-use super::Bonds;
-use super::Cell;
-use super::Codes;
-use super::spheres::Particles;
+use super::{Bonds, Cell, Codes, Particles};
 use crate::memory::{self, Shortage};
 use crate::scene::Spheres;
 use glam::{DQuat, DVec3};

@@ -1,9 +1,9 @@
 //! Radii of particles: the file's, those of elements, or a guess.
 
 use super::Element;
-use super::select::expression;
+use super::select::expression::{self, numbers};
 use super::spheres::Warnings;
-use super::style::{add_numbers, numbers, with_synonyms};
+use super::style::{add_numbers, with_synonyms};
 use super::{Kind, Kinds};
 use super::{ParticleFrame, Particles};
 use super::{Radii, ReadOptions};

@@ -1,112 +1,33 @@
 //! Conversion of particle frames to spheres: finds radii and colors, and drops invalid rows.
 
-use super::boundary::AddedBodies;
 use super::radii::{FoundRadii, apply_expression, half_spacing, radii};
-use super::style::{Arrows, Column, ElementColors, ID, INDEX, TypeMaterial};
-use super::{Cell, FirstFrame, Orientation, ParticleFrame, ReadOptions, TextColumn};
+use super::style::ElementColors;
+use super::{Cell, FirstFrame, ParticleFrame, Particles, ReadOptions, TextColumn};
 use crate::color::category;
 use crate::memory;
-use crate::scene::{FileError, NamedMaterial, Rgb, Spheres};
-use spherule_particles::internals::{clipped, listed, pairs};
+use crate::scene::{FileError, Rgb, Spheres};
+use spherule_particles::internals::{clipped, listed};
 use std::path::Path;
 
-/// The contents of a particle file, as spheres.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Particles {
-    /// The spheres; materials are rows of `material_names`.
-    pub spheres: Spheres,
-    /// The frame, without what `spheres` has: positions, radii, colors and materials, whose columns are empty. Other
-    /// columns have a row for each sphere. The cell and trails are scaled like positions, the radius of an ellipsoid is that
-    /// of the sphere around it, and each warning begins with the name of the file.
-    pub frame: ParticleFrame,
-    /// Names of materials in the file; an empty name means none.
-    pub material_names: Vec<String>,
-    /// Opacities by row of `material_names`, 0 to 1; `None`, or no row, for that of the material.
-    pub opacities: Vec<Option<f64>>,
-    /// Radius of the sticks that are drawn for bonds ([`Model`](super::Model)); 0: none are drawn.
-    pub stick_radius: f64,
-    /// Radius of the sticks at each particle, if they differ; 0 where none are drawn.
-    pub stick_radii: Vec<f64>,
-    /// Row of the polyhedra of each particle among those of the style ([`ParticleStyle::find_polyhedra`](super::ParticleStyle::find_polyhedra));
-    /// empty if all have the same.
-    pub polyhedra: Vec<u32>,
-    /// Arrows for vectors, if they were asked for ([`ParticleStyle::arrows`](super::ParticleStyle::arrows)).
-    pub arrows: Arrows,
-    /// Chosen materials, by names in `material_names`; the others are defined by the scene.
-    pub materials: Vec<NamedMaterial>,
-    /// The radius of all before scaling, if it is guessed.
-    pub guessed_radius: Option<f64>,
-    /// The choices that all frames of the file have in common, if it has several.
-    pub first_frame: Option<FirstFrame>,
-    /// The orientation of all particles, before a style dropped some or changed their radii.
-    pub orientation: Option<Orientation>,
-    /// True if the cell of the file is that of a small crystal ([`ParticleFrame::has_crystal_cell`]).
-    pub has_crystal_cell: bool,
-    /// True if the file is that of a crystal ([`ParticleFrame::is_crystal`]).
-    pub is_crystal: bool,
-    /// Bodies that the boundary of the cell and polyhedra add, made when all rows are final ([`Particles::draw_boundary`]).
-    pub added: AddedBodies,
+/// Converts a frame that was read from `path` to spheres, ignoring the options' choice of a frame.
+///
+/// # Errors
+///
+/// It holds no particles, or lacks the radii that are asked for.
+pub fn of_frame(
+    path: &Path,
+    frame: ParticleFrame,
+    options: &ReadOptions,
+) -> Result<Particles, FileError> {
+    of_frame_in(path, frame, options, None)
 }
 
-impl Particles {
-    /// Returns whether particles can be colored by a column of this name: one that was kept, one
-    /// with a role, or one that all particles have.
-    pub fn can_color_by(&self, name: &str) -> bool {
-        [ID, INDEX].contains(&name)
-            || Column::find(self, name).is_some_and(|column| column.has_values())
-    }
-
-    /// Returns the center of the first particle with this number in the column of ids; `None` if there is
-    /// none, or if ids were not read ([`ParticleStyle::also_read`](super::ParticleStyle::also_read)).
-    pub fn position_of(&self, id: f64) -> Option<glam::DVec3> {
-        let row = match Column::find(self, ID)? {
-            Column::Numbers(ids) => ids.iter().position(|own| *own == id)?,
-            // Serial numbers of PDB files may have letters.
-            Column::Texts { names, codes } => {
-                let is_id = |name: &&str| name.trim().parse() == Ok(id);
-                let named: Vec<bool> = names.iter().map(is_id).collect();
-                (0..codes.len()).find(|&row| named[codes.code(row) as usize])?
-            }
-        };
-        Some(self.spheres.center(row))
-    }
-
-    /// Returns the `key=value` pairs of the title, as extended XYZ has them.
-    pub fn header_values(&self) -> Vec<(String, String)> {
-        pairs(&self.frame.title)
-    }
-
-    /// Returns the material of a row of `material_names`: one that was chosen, or one that the file
-    /// names by a word of [`TypeMaterial`].
-    pub(in crate::scene) fn own_material(&self, row: u32) -> Option<NamedMaterial> {
-        let name = &self.material_names[row as usize];
-        let chosen = self.materials.iter().find(|material| material.name == *name);
-        chosen.cloned().or_else(|| {
-            let spheres = &self.spheres;
-            let rows = (0..spheres.len()).filter(|&sphere| spheres.material_of(sphere) == row);
-            let color = common_color(spheres, rows);
-            let material = TypeMaterial::named(name)?.material(color);
-            Some(NamedMaterial { name: name.clone(), material })
-        })
-    }
-
-    /// Keeps the rows for which `keep` is true.
-    pub(super) fn retain(&mut self, keep: &[bool]) {
-        self.spheres.retain(keep);
-        self.frame.retain(keep);
-        self.arrows.retain(keep);
-    }
-}
-
-/// Returns the color that these spheres have in common, or white if they have several.
-pub(super) fn common_color(spheres: &Spheres, rows: impl Iterator<Item = usize>) -> Rgb {
-    let mut colors = rows.map(|row| spheres.color_of(row));
-    let first = colors.next().unwrap_or(Rgb::ONE);
-    if colors.all(|color| color == first) { first } else { Rgb::ONE }
-}
-
-/// Converts a frame to spheres; positions are moved, not copied.
-pub(super) fn spheres(
+/// Converts a frame to spheres as [`of_frame`], with the choices by the first frame, if there are several.
+///
+/// # Errors
+///
+/// The same.
+pub fn of_frame_in(
     path: &Path,
     mut frame: ParticleFrame,
     options: &ReadOptions,

@@ -3,8 +3,8 @@
 
 pub(super) mod sections;
 
-use self::sections::{annotations, ground, look, quoted, render};
-use super::keys::{self, EnvironmentKeys, section_text};
+use self::sections::{annotations, ground, look, render};
+use super::keys::{self, EnvironmentKeys, quoted, section_text};
 use super::{
     Camera, Environment, EnvironmentMap, FileError, Look, NamedMaterial, Rgb, Scene, Settings,
     Spheres, included_files,

@@ -1,7 +1,7 @@
 //! The sections of a scene file as text.
 
 use crate::scene::bodies::FileBodies;
-use crate::scene::keys::{GroundKeys, section_text};
+use crate::scene::keys::{GroundKeys, quoted, section_text};
 use crate::scene::{Annotations, Lettering, Look, Scene};
 use crate::settings::{SETTINGS, Setting, Settings, Value};
 
@@ -55,17 +55,6 @@ pub(super) fn ground(scene: &Scene) -> String {
         section_text(&GroundKeys { ground, material })
     });
     section.unwrap_or_default()
-}
-
-/// A text as a basic string of TOML, which serves as a key too: `toml` itself would write some
-/// texts in several lines, which no key may have.
-pub(in crate::scene) fn quoted(text: &str) -> String {
-    let escape = |letter: char| match letter {
-        '"' | '\\' => format!("\\{letter}"),
-        _ if letter.is_control() => format!("\\u{:04X}", u32::from(letter)),
-        _ => letter.to_string(),
-    };
-    format!("\"{}\"", text.chars().map(escape).collect::<String>())
 }
 
 /// The sections of bodies; `material` gives the name of a row of the materials.

@@ -48,7 +48,7 @@ impl World {
     }
 
     /// Samples one light for each of the receivers in `lanes`, from a set of random numbers for each:
-    /// [`Lights::choose`] and [`World::sample_light`]. Weights and densities include the probability of the
+    /// [`Lights::choose`](super::Lights::choose) and [`World::sample_light`]. Weights and densities include the probability of the
     /// choice.
     #[inline(never)]
     pub fn sample_light_row(

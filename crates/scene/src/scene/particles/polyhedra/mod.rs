@@ -3,6 +3,7 @@
 mod hull;
 
 use self::hull::{Hull, MOST};
+use super::contents::Polyhedron;
 use super::{Kind, Particles};
 use crate::scene::{FileError, NamedMaterial, Sticks, Triangles};
 use glam::DVec3;
@@ -40,15 +41,6 @@ pub struct Coordination {
     /// Their hull.
     hull: Hull,
     /// Opacity of its faces.
-    opacity: f64,
-}
-
-/// A polyhedron that is drawn, by rows of spheres.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Polyhedron {
-    center: u32,
-    triangles: Vec<[u32; 3]>,
-    edges: Vec<[u32; 2]>,
     opacity: f64,
 }
 

@@ -1,8 +1,7 @@
 //! Columns by expressions: wherever a column is named, arithmetic over columns may stand.
 
 use super::bind;
-use super::collect;
-use super::grammar::{self, Node, Tree};
+use super::grammar::{self, Node, Tree, collect};
 use super::words::{self, SpannedError};
 use crate::scene::FileError;
 use crate::scene::particles::Particles;
@@ -67,6 +66,26 @@ pub(in super::super) fn evaluate<'p>(
     }
     let numbers = bind::numbers(&tree, particles).map_err(fault)?;
     Ok(Column::Numbers(Cow::Owned(numbers)))
+}
+
+/// Returns the numbers of a column or of an expression; `purpose` names what they are for, in the plural.
+///
+/// # Errors
+///
+/// There is no such column, it has texts, or the expression is invalid.
+pub(in super::super) fn numbers<'p>(
+    path: &Path,
+    particles: &'p Particles,
+    text: &str,
+    purpose: &str,
+) -> Result<Cow<'p, [f64]>, FileError> {
+    match evaluate(path, particles, text)? {
+        Column::Numbers(numbers) => Ok(numbers),
+        Column::Texts { .. } => {
+            let message = format!("the column `{text}` has texts, but {purpose} are numbers");
+            Err(FileError::whole_file(path, message).with_help("name a column of numbers"))
+        }
+    }
 }
 
 /// Characters that only expressions have, besides those of odd names.

@@ -1,7 +1,7 @@
 //! Syntax trees of conditions, by recursive descent no deeper than [`MAX_DEPTH`].
 
 use super::functions::Function;
-use super::vocabulary::Group;
+use super::vocabulary::{Group, columns_of};
 use super::words::{Sign, SpannedError, Word, Words};
 use crate::scene::particles::VectorColumns;
 use crate::suggest;
@@ -319,4 +319,32 @@ fn vector(arguments: &[Tree]) -> Option<(String, Vec<Tree>)> {
     let VectorColumns(names) = name.parse().ok()?;
     let component = |name| Tree { node: Node::Column(name), span: span.clone() };
     Some((name.clone(), names.map(component).into()))
+}
+
+/// Appends the names of all columns of a condition or of an expression.
+pub(super) fn collect(tree: &Tree, names: &mut Vec<String>) {
+    match &tree.node {
+        Node::Number(_) | Node::Text(_) => (),
+        Node::Word(name) | Node::Column(name) => names.push(name.clone()),
+        Node::Negative(inner) | Node::Not(inner) => collect(inner, names),
+        Node::Compare(_, sides) => sides.iter().for_each(|side| collect(side, names)),
+        Node::Arithmetic(first, rest) => {
+            collect(first, names);
+            for (_, operand) in rest {
+                collect(operand, names);
+            }
+        }
+        Node::All(parts) | Node::Any(parts) | Node::Call(_, parts) | Node::Length(_, parts) => {
+            for part in parts {
+                collect(part, names);
+            }
+        }
+        Node::OneOf(column, _) => collect(column, names),
+        Node::Group(group) => names.extend(group.columns().iter().map(|&name| name.to_owned())),
+        Node::Within { of, .. } => collect(of, names),
+        Node::Same { column, of } => {
+            names.extend(columns_of(column));
+            collect(of, names);
+        }
+    }
 }

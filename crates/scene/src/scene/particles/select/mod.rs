@@ -20,10 +20,10 @@ mod vocabulary;
 mod words;
 
 pub use self::census::MoleculeCensus;
-use self::grammar::{Node, Tree};
+use self::grammar::{Tree, collect};
 use super::style::add_numbers;
-use super::{AlignBy, ParticleFrame, ParticleStyle, Particles};
-use crate::scene::{FileError, FramedSphere, Spheres};
+use super::{AlignBy, ParticleFrame, Particles};
+use crate::scene::{FileError, Spheres};
 use std::ops::Range;
 use std::path::Path;
 use std::str::FromStr;
@@ -191,25 +191,6 @@ impl Selection {
 }
 
 impl Particles {
-    /// Returns a sphere about the middle of the particles that the camera frames, with all of them; `None` if the style names
-    /// none, or if there are no particles.
-    ///
-    /// # Errors
-    ///
-    /// The condition names no column there is, compares what cannot be compared, or is true of no particle.
-    pub fn framed(
-        &self,
-        path: &Path,
-        style: &ParticleStyle,
-    ) -> Result<Option<FramedSphere>, FileError> {
-        let Some(selection) = style.framed.as_ref().filter(|_| !self.spheres.is_empty()) else {
-            return Ok(None);
-        };
-        let rows = self.selected(path, selection, false, "looked at")?;
-        let sphere = |&row: &usize| (self.spheres.center(row), self.spheres.radius[row]);
-        Ok(FramedSphere::around(|| rows.iter().map(sphere)))
-    }
-
     /// Returns the rows of the particles that a condition is true of; `what` happens to them, in the message.
     ///
     /// # Errors
@@ -225,33 +206,6 @@ impl Particles {
     ) -> Result<Vec<usize>, FileError> {
         let chosen = selection.some(path, self, allow_empty, what)?;
         Ok((0..self.spheres.len()).filter(|row| chosen[*row]).collect())
-    }
-}
-
-fn collect(tree: &Tree, names: &mut Vec<String>) {
-    match &tree.node {
-        Node::Number(_) | Node::Text(_) => (),
-        Node::Word(name) | Node::Column(name) => names.push(name.clone()),
-        Node::Negative(inner) | Node::Not(inner) => collect(inner, names),
-        Node::Compare(_, sides) => sides.iter().for_each(|side| collect(side, names)),
-        Node::Arithmetic(first, rest) => {
-            collect(first, names);
-            for (_, operand) in rest {
-                collect(operand, names);
-            }
-        }
-        Node::All(parts) | Node::Any(parts) | Node::Call(_, parts) | Node::Length(_, parts) => {
-            for part in parts {
-                collect(part, names);
-            }
-        }
-        Node::OneOf(column, _) => collect(column, names),
-        Node::Group(group) => names.extend(group.columns().iter().map(|&name| name.to_owned())),
-        Node::Within { of, .. } => collect(of, names),
-        Node::Same { column, of } => {
-            names.extend(spatial::columns_of(column));
-            collect(of, names);
-        }
     }
 }
 

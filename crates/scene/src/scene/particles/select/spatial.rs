@@ -29,21 +29,13 @@ pub(super) fn within(
     Ok((0..of.len()).into_par_iter().map(near).collect())
 }
 
-/// Returns the columns that identify what particles have in common.
-pub(super) fn columns_of(name: &str) -> Vec<String> {
-    if name.eq_ignore_ascii_case(vocabulary::RESIDUE) {
-        return vocabulary::RESIDUE_COLUMNS.map(str::to_owned).into();
-    }
-    vec![name.to_owned()]
-}
-
 /// Returns the rows that have the same values in a column as one of those that are true.
 pub(super) fn same(
     particles: &Particles,
     of: &[bool],
     column: &str,
 ) -> Result<Vec<bool>, Option<String>> {
-    let names = columns_of(column);
+    let names = vocabulary::columns_of(column);
     let found: Vec<Column> =
         names.iter().filter_map(|name| Column::find(particles, name)).collect();
     let is_residue = names.len() > 1;

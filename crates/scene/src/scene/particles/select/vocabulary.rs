@@ -251,3 +251,11 @@ fn hydrogen(particles: &Particles) -> Result<Vec<bool>, String> {
         name.trim_start_matches(|letter: char| letter.is_ascii_digit()).starts_with('H')
     })
 }
+
+/// Returns the columns that identify what particles have in common.
+pub(super) fn columns_of(name: &str) -> Vec<String> {
+    if name.eq_ignore_ascii_case(RESIDUE) {
+        return RESIDUE_COLUMNS.map(str::to_owned).into();
+    }
+    vec![name.to_owned()]
+}

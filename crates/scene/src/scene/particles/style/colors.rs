@@ -2,7 +2,7 @@
 
 use super::columns::Column;
 use super::labels::{self, Colored, NumberColors};
-use super::{ColorEnds, Coloring, ColumnSummary, SharedColors};
+use super::{ColorEnds, ColumnSummary, SharedColors};
 use crate::color;
 use crate::color::elements::{cpk, jmol};
 use crate::color::{CATEGORIES, Map, RangeError, Rgb, Scale, Spacing};
@@ -54,6 +54,21 @@ impl ElementColors {
             None => table_colors(&kinds.codes, &table),
         })
     }
+}
+
+/// Source of colors.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Coloring {
+    /// The file's colors; without them, Jmol's colors of elements; without elements, one color per
+    /// type.
+    #[default]
+    Usual,
+    /// One linear color, each channel 0 to 1.
+    Uniform(Rgb),
+    /// Colors of elements, even if the file has colors.
+    Elements(ElementColors),
+    /// Colors by the numbers or texts of a column, or by an expression over columns.
+    Column(ColumnColors),
 }
 
 impl Coloring {

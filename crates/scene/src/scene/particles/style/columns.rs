@@ -1,9 +1,8 @@
 //! Columns by name: those of the file, and those that all particles have.
 
 use crate::scene::particles::Particles;
-use crate::scene::particles::Role;
-use crate::scene::particles::select::expression;
 use crate::scene::particles::{Codes, Kind};
+use crate::scene::particles::{NumberColumn, Role};
 use crate::scene::{FileError, Rgb};
 use crate::suggest;
 use spherule_particles::internals::aliases;
@@ -12,10 +11,10 @@ use std::borrow::Cow;
 use std::path::Path;
 
 /// Name of the column of particle numbers: the file's, or else the index, from 0.
-pub(in super::super) const ID: &str = "id";
+const ID: &str = "id";
 
 /// Name of the column of indices in the file, from 0.
-pub(in super::super) const INDEX: &str = "index";
+const INDEX: &str = "index";
 
 /// Names with a meaning in every file, in addition to [`ID`] and [`ELEMENT`].
 const COMMON: [(&str, Role); 5] = [
@@ -27,7 +26,7 @@ const COMMON: [(&str, Role); 5] = [
 ];
 
 /// Name of the length of velocities, and the columns of their components.
-pub(super) const SPEED: (&str, [&str; 3]) = ("speed", ["vx", "vy", "vz"]);
+const SPEED: (&str, [&str; 3]) = ("speed", ["vx", "vy", "vz"]);
 
 /// Name of the column of elements, or of types that are not elements.
 const ELEMENT: &str = "element";
@@ -51,6 +50,28 @@ pub enum ColumnValues {
 }
 
 impl Particles {
+    /// Returns whether particles can be colored by a column of this name: one that was kept, one
+    /// with a role, or one that all particles have.
+    pub fn can_color_by(&self, name: &str) -> bool {
+        [ID, INDEX].contains(&name)
+            || Column::find(self, name).is_some_and(|column| column.has_values())
+    }
+
+    /// Returns the center of the first particle with this number in the column of ids; `None` if there is
+    /// none, or if ids were not read ([`ParticleStyle::also_read`](super::super::ParticleStyle::also_read)).
+    pub fn position_of(&self, id: f64) -> Option<glam::DVec3> {
+        let row = match Column::find(self, ID)? {
+            Column::Numbers(ids) => ids.iter().position(|own| *own == id)?,
+            // Serial numbers of PDB files may have letters.
+            Column::Texts { names, codes } => {
+                let is_id = |name: &&str| name.trim().parse() == Ok(id);
+                let named: Vec<bool> = names.iter().map(is_id).collect();
+                (0..codes.len()).find(|&row| named[codes.code(row) as usize])?
+            }
+        };
+        Some(self.spheres.center(row))
+    }
+
     /// Returns the values of a column for these rows; `None` if there is no column of this name that was kept.
     pub fn column_values(&self, name: &str, rows: &[usize]) -> Option<ColumnValues> {
         Some(match Column::find(self, name)?.of_rows(rows) {
@@ -209,27 +230,33 @@ pub(in super::super) fn nearest<'p>(particles: &'p Particles, name: &str) -> Opt
     suggest::nearest(name, names(particles))
 }
 
-/// Returns the numbers of a column or of an expression; `purpose` names what they are for, in the plural.
-///
-/// # Errors
-///
-/// There is no such column, it has texts, or the expression is invalid.
-pub(in super::super) fn numbers<'p>(
-    path: &Path,
-    particles: &'p Particles,
-    text: &str,
-    purpose: &str,
-) -> Result<Cow<'p, [f64]>, FileError> {
-    match expression::evaluate(path, particles, text)? {
-        Column::Numbers(numbers) => Ok(numbers),
-        Column::Texts { .. } => {
-            let message = format!("the column `{text}` has texts, but {purpose} are numbers");
-            Err(FileError::whole_file(path, message).with_help("name a column of numbers"))
-        }
-    }
-}
-
 /// Returns the error for a column that does not exist, with the names of those that do.
 pub(in super::super) fn missing(path: &Path, particles: &Particles, name: &str) -> FileError {
     FileError::whole_file(path, unknown(particles, name))
+}
+
+/// Returns names of columns with those that the same quantities have in other programs, or that they are computed from.
+pub(in super::super) fn with_synonyms(mut columns: Vec<String>) -> Vec<String> {
+    if columns.iter().any(|name| name.eq_ignore_ascii_case(SPEED.0)) {
+        columns.extend(SPEED.1.map(str::to_owned));
+    }
+    for at in 0..columns.len() {
+        let others = aliases::of(&columns[at]).map(str::to_owned).collect::<Vec<_>>();
+        columns.extend(others);
+    }
+    columns
+}
+
+/// Adds the columns of ids and indices, if they are asked for and missing, before rows are dropped.
+pub(in super::super) fn add_numbers(particles: &mut Particles, names: &[String]) {
+    for own in [ID, INDEX] {
+        let names_column = |name: &String| {
+            name.eq_ignore_ascii_case(own)
+                || aliases::of(own).any(|other| other.eq_ignore_ascii_case(name))
+        };
+        if names.iter().any(names_column) && Column::find(particles, own).is_none() {
+            let values = (0..particles.spheres.len()).map(|row| row as f64).collect();
+            particles.frame.numbers.push(NumberColumn { name: own.to_owned(), values });
+        }
+    }
 }

@@ -13,13 +13,12 @@ mod summary;
 mod title;
 mod types;
 
-pub use arrows::{ArrowCentering, ArrowSizes, ArrowStyle, Arrows, VectorColumns};
+pub use arrows::ArrowStyle;
 pub use categories::Category;
 use colors::Painted;
-pub use colors::{ColumnColors, ElementColors, Legend};
+pub use colors::{Coloring, ColumnColors, ElementColors, Legend};
 pub use columns::ColumnValues;
-use columns::SPEED;
-pub(super) use columns::{Column, ID, INDEX, missing, nearest, numbers, unknown};
+pub(super) use columns::{Column, add_numbers, missing, nearest, unknown, with_synonyms};
 pub use ends::{ColorEnd, ColorEnds};
 pub use labels::NumberColors;
 pub use opacity::{GHOST, Opacity};
@@ -28,28 +27,11 @@ pub use selected::{Applied, SelectedStyle};
 pub use summary::{ColumnSummary, SharedColors};
 pub use types::{TypeMaterial, TypeStyle};
 
-use super::NumberColumn;
 use super::polyhedra;
 use super::select::{Selection, expression};
 use super::{BondSource, Coordination, Model, Orientation, Particles, Polyhedra, SharedNames};
-use crate::scene::{FileError, Rgb};
-use spherule_particles::internals::aliases;
+use crate::scene::{FileError, FramedSphere};
 use std::path::Path;
-
-/// Source of colors.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum Coloring {
-    /// The file's colors; without them, Jmol's colors of elements; without elements, one color per
-    /// type.
-    #[default]
-    Usual,
-    /// One linear color, each channel 0 to 1.
-    Uniform(Rgb),
-    /// Colors of elements, even if the file has colors.
-    Elements(ElementColors),
-    /// Colors by the numbers or texts of a column, or by an expression over columns.
-    Column(ColumnColors),
-}
 
 /// The style of particles.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -277,29 +259,24 @@ impl ParticleStyle {
     }
 }
 
-/// Returns names of columns with those that the same quantities have in other programs, or that they are computed from.
-pub(super) fn with_synonyms(mut columns: Vec<String>) -> Vec<String> {
-    if columns.iter().any(|name| name.eq_ignore_ascii_case(SPEED.0)) {
-        columns.extend(SPEED.1.map(str::to_owned));
-    }
-    for at in 0..columns.len() {
-        let others = aliases::of(&columns[at]).map(str::to_owned).collect::<Vec<_>>();
-        columns.extend(others);
-    }
-    columns
-}
-
-/// Adds the columns of ids and indices, if they are asked for and missing, before rows are dropped.
-pub(super) fn add_numbers(particles: &mut Particles, names: &[String]) {
-    for own in [ID, INDEX] {
-        let names_column = |name: &String| {
-            name.eq_ignore_ascii_case(own)
-                || aliases::of(own).any(|other| other.eq_ignore_ascii_case(name))
+impl Particles {
+    /// Returns a sphere about the middle of the particles that the camera frames, with all of them; `None` if the style names
+    /// none, or if there are no particles.
+    ///
+    /// # Errors
+    ///
+    /// The condition names no column there is, compares what cannot be compared, or is true of no particle.
+    pub fn framed(
+        &self,
+        path: &Path,
+        style: &ParticleStyle,
+    ) -> Result<Option<FramedSphere>, FileError> {
+        let Some(selection) = style.framed.as_ref().filter(|_| !self.spheres.is_empty()) else {
+            return Ok(None);
         };
-        if names.iter().any(names_column) && Column::find(particles, own).is_none() {
-            let values = (0..particles.spheres.len()).map(|row| row as f64).collect();
-            particles.frame.numbers.push(NumberColumn { name: own.to_owned(), values });
-        }
+        let rows = self.selected(path, selection, false, "looked at")?;
+        let sphere = |&row: &usize| (self.spheres.center(row), self.spheres.radius[row]);
+        Ok(FramedSphere::around(|| rows.iter().map(sphere)))
     }
 }
 

@@ -1,8 +1,8 @@
 //! Opacity of particles: for all, for a selection, or by the numbers of a column.
 
-use super::columns::numbers;
 use crate::scene::FileError;
 use crate::scene::particles::Particles;
+use crate::scene::particles::select::expression::numbers;
 use crate::settings::share;
 use std::collections::HashMap;
 use std::path::Path;

@@ -2,10 +2,10 @@
 
 use super::colors::Painted;
 use super::properties::{PROPERTIES, entries};
+use super::types::common_color;
 use super::{Coloring, ColumnSummary, GHOST, Legend, Opacity, ParticleStyle, Properties, opacity};
 use crate::color::Rgb;
 use crate::scene::particles::model::{self, Part};
-use crate::scene::particles::spheres::common_color;
 use crate::scene::particles::{Fault, Model, Particles, Selection};
 use crate::scene::{FileError, NamedMaterial};
 use std::borrow::Cow;

@@ -1,8 +1,10 @@
 use super::*;
 use crate::color::elements::cpk;
 use crate::color::{Map, RangeError, Spacing, category, srgb};
+use crate::scene::particles::select::expression::numbers;
 use crate::scene::particles::{
-    Columns, Element, LengthUnit, ParticleFrame, Radii, ReadOptions, read,
+    ArrowCentering, ArrowSizes, Columns, Element, LengthUnit, ParticleFrame, Radii, ReadOptions,
+    read,
 };
 use crate::scene::{Material, Rgb, Scene};
 use glam::DVec3;

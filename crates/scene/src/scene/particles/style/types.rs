@@ -4,7 +4,7 @@ use super::Properties;
 use super::properties::entries;
 use crate::color::Rgb;
 use crate::scene::particles::{Element, Kind, Particles};
-use crate::scene::{ConductorFresnel, FileError, Material};
+use crate::scene::{ConductorFresnel, FileError, Material, NamedMaterial, Spheres};
 use crate::suggest;
 use std::path::Path;
 use std::str::FromStr;
@@ -97,6 +97,29 @@ pub struct TypeStyle {
     /// The element, by which radii, colors and bonds are found; it must be known as the file is read:
     /// [`ReadOptions::elements`](crate::scene::particles::ReadOptions::elements).
     pub element: Option<Element>,
+}
+
+impl Particles {
+    /// Returns the material of a row of `material_names`: one that was chosen, or one that the file
+    /// names by a word of [`TypeMaterial`].
+    pub(in crate::scene) fn own_material(&self, row: u32) -> Option<NamedMaterial> {
+        let name = &self.material_names[row as usize];
+        let chosen = self.materials.iter().find(|material| material.name == *name);
+        chosen.cloned().or_else(|| {
+            let spheres = &self.spheres;
+            let rows = (0..spheres.len()).filter(|&sphere| spheres.material_of(sphere) == row);
+            let color = common_color(spheres, rows);
+            let material = TypeMaterial::named(name)?.material(color);
+            Some(NamedMaterial { name: name.clone(), material })
+        })
+    }
+}
+
+/// Returns the color that these spheres have in common, or white if they have several.
+pub(super) fn common_color(spheres: &Spheres, rows: impl Iterator<Item = usize>) -> Rgb {
+    let mut colors = rows.map(|row| spheres.color_of(row));
+    let first = colors.next().unwrap_or(Rgb::ONE);
+    if colors.all(|color| color == first) { first } else { Rgb::ONE }
 }
 
 impl FromStr for TypeStyle {
