@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from ._spherule import (
         Drawn as Drawn,
+        FrameFile as FrameFile,
         FrameSequence as FrameSequence,
         Matte as Matte,
         Refinement as Refinement,

@@ -361,7 +361,11 @@ def read(
     frame = _values.integer("frame", frame, -(2**63), 2**63 - 1)
     options = _options(format, columns, atom_style, topology, elements, bonds)
     name = _values.path("path", path)
-    table = _native.read(name, frame, options)
+    return _particles(name, _native.read(name, frame, options))
+
+
+def _particles(name: str, table: dict[str, Any]) -> Particles:
+    """The particles of a frame that was read from the file of this name."""
     particles = Particles.__new__(Particles)
     particles.positions = table["positions"].T
     particles.radius, particles.color = table["radius"], table["color"]
@@ -425,7 +429,7 @@ def frames(
     elements: Mapping[str, str] | None = None,
     bonds: str | None = None,
 ) -> Iterator[Particles]:
-    """The frames of a particle file, one after the other.
+    """The frames of a particle file, one after the other. The next ones are read while one is used: at most two, if memory is left.
 
     Args:
         path, format, columns, atom_style, topology, elements, bonds: As for :func:`read`.
@@ -440,15 +444,9 @@ def frames(
         >>> [float(frame.x[0]) for frame in frames(path)]
         [0.0, 1.0]
     """
-    count = count_frames(path, format=format, columns=columns, atom_style=atom_style, topology=topology)
-    for number in range(count):
-        yield read(
-            path,
-            number,
-            format=format,
-            columns=columns,
-            atom_style=atom_style,
-            topology=topology,
-            elements=elements,
-            bonds=bonds,
-        )
+    from . import _native
+
+    name = _values.path("path", path)
+    file = _native.FrameFile(name, _options(format, columns, atom_style, topology, elements, bonds))
+    for number in range(file.count()):
+        yield _particles(name, file.read(number))

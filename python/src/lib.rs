@@ -35,7 +35,7 @@ mod _spherule {
     #[pymodule_export]
     use super::parts::{merge, render_part};
     #[pymodule_export]
-    use super::read::{count_frames, element_of, material_names, read};
+    use super::read::{FrameFile, count_frames, element_of, material_names, read};
     #[pymodule_export]
     use super::scene::{Scene, color_of, linear_color};
     #[pymodule_export]

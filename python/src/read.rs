@@ -13,6 +13,7 @@ use spherule::particles::{
 };
 use spherule::scene::particles::{FirstFrame, TrajectoryReader, TypeMaterial};
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Options for reading a particle file, by the names that the program has for them.
 #[derive(FromPyObject)]
@@ -84,21 +85,65 @@ pub(crate) fn read(
     let options = table.options(py)?;
     let work = move |_: &_| frame_of(&path, frame, options);
     let (read, _) = Watcher::default().run(py, pool(py, None)?, work)?;
-    let (frame, first_frame) = read.map_err(|error| of_file(py, &error))?;
-    let table = columns(py, frame)?;
-    table.set_item(
-        "first_frame",
-        first_frame.map(|first| first_frame::table(py, &first)).transpose()?,
-    )?;
-    Ok(table)
+    read.map_err(|error| of_file(py, &error))?.table(py)
 }
 
-/// Returns a frame, and the choices by the first one, if the file has several.
-fn frame_of(
-    path: &Path,
-    frame: i64,
+/// A file of which frames are read one after another: it stays open, and the next frames are read ahead.
+#[pyclass(frozen, module = "spherule._spherule")]
+pub(crate) struct FrameFile {
+    path: PathBuf,
     options: ReadOptions,
-) -> Result<(ParticleFrame, Option<FirstFrame>), FileError> {
+    reader: Arc<Mutex<TrajectoryReader>>,
+}
+
+#[pymethods]
+impl FrameFile {
+    #[new]
+    fn new(py: Python<'_>, path: PathBuf, table: ReadTable) -> PyResult<Self> {
+        Ok(Self { path, options: table.options(py)?, reader: Arc::default() })
+    }
+
+    /// The number of complete frames.
+    fn count(&self, py: Python<'_>) -> PyResult<u64> {
+        let count = lock(&self.reader).counter(&self.path, &self.options);
+        let (count, _) = Watcher::default().run(py, pool(py, None)?, move |_: &_| count())?;
+        count.map_err(|error| of_file(py, &error))
+    }
+
+    /// A frame, from 0, as `read` returns it.
+    fn read<'py>(&self, py: Python<'py>, frame: u64) -> PyResult<Bound<'py, PyDict>> {
+        let (reader, path) = (Arc::clone(&self.reader), self.path.clone());
+        let options = ReadOptions { frame: FrameChoice::Index(frame), ..self.options.clone() };
+        let work = move |_: &_| {
+            let (frame, first_frame) = lock(&reader).read_alone(&path, &options)?;
+            Ok::<_, FileError>(FileFrame { frame, first_frame })
+        };
+        let (read, _) = Watcher::default().run(py, pool(py, None)?, work)?;
+        read.map_err(|error| of_file(py, &error))?.table(py)
+    }
+}
+
+fn lock(reader: &Mutex<TrajectoryReader>) -> MutexGuard<'_, TrajectoryReader> {
+    reader.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A frame, and the choices by the first one, if the file has several.
+struct FileFrame {
+    frame: ParticleFrame,
+    first_frame: Option<FirstFrame>,
+}
+
+impl FileFrame {
+    fn table(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+        let table = columns(py, self.frame)?;
+        let first_frame = self.first_frame.map(|first| first_frame::table(py, &first));
+        table.set_item("first_frame", first_frame.transpose()?)?;
+        Ok(table)
+    }
+}
+
+/// Returns a frame; negative numbers count from the end.
+fn frame_of(path: &Path, frame: i64, options: ReadOptions) -> Result<FileFrame, FileError> {
     let frame = match frame {
         -1 => FrameChoice::Last,
         0.. => FrameChoice::Index(frame.unsigned_abs()),
@@ -111,7 +156,8 @@ fn frame_of(
             FrameChoice::Index(index?)
         }
     };
-    TrajectoryReader::default().read_frame(path, &ReadOptions { frame, ..options })
+    let read = TrajectoryReader::default().read_frame(path, &ReadOptions { frame, ..options })?;
+    Ok(FileFrame { frame: read.0, first_frame: read.1 })
 }
 
 fn columns(py: Python<'_>, frame: ParticleFrame) -> PyResult<Bound<'_, PyDict>> {

@@ -65,6 +65,22 @@ def test_frames_are_numbered_from_either_end(folder):
     path = folder / "a.lammpstrj"
     assert spherule.count_frames(path) == 2
     assert [frame.step for frame in spherule.frames(path)] == [5, 9]
+    long = folder / "long.xyz"
+    long.write_text("".join(f"2\n\nH{number % 3} {number} 0 0\nO 0 1 0\n" for number in range(40)))
+    frames = list(spherule.frames(long))
+    assert [frame.x[0] for frame in frames] == list(range(40))
+    for number in (0, 1, 2, 7, 39):
+        alone = spherule.read(long, number)
+        own = frames[number]
+        assert (own.kinds.tolist(), own.elements.tolist()) == (alone.kinds.tolist(), alone.elements.tolist())
+        assert own._kinds[0] == alone._kinds[0] and own._first_frame[0] == alone._first_frame[0]
+    with long.open("a") as file:
+        file.write("2\n\nC 1 2 x\nC 1 2 3\n1\n\nC 1 2 3\n")
+    assert spherule.count_frames(long) == 42
+    several = spherule.frames(long)
+    assert [next(several).x[0] for _ in range(40)] == list(range(40))
+    with pytest.raises(spherule.Error, match="line 163"):
+        next(several)
     first, last = spherule.read(path), spherule.read(path, np.int64(-1))
     assert spherule.read(path, -2).step == first.step == 5 and last.step == spherule.read(path, 1).step == 9
     assert last.columns["q"].tolist() == [0.25] and first.kinds.tolist() == ["1", "2"]

@@ -7,7 +7,8 @@ use crate::scalar::{Order, Scalar};
 use crate::schema::Schema;
 use crate::{
     Cell, Element, ElementSource, FileError, Format, LengthUnit, ParticleFrame, ReadOptions,
-    builder::Builder, frame_reader::FrameReader, options::component_names, source::Source,
+    builder::Builder, frame_reader::FrameReader, options::component_names, place::Place,
+    source::Source,
 };
 use glam::DVec3;
 use serde_json::{Map, Value};
@@ -252,6 +253,15 @@ impl FrameReader for Trajectory {
     fn more(&mut self) -> Result<bool, FileError> {
         Ok(self.next < self.frames
             && self.file.has_range(self.table.saturating_add(self.next * 8), 8))
+    }
+
+    fn place(&self) -> Option<Place> {
+        Some(Place::new(0, self.next))
+    }
+
+    fn start_at(&mut self, place: &Place) -> Result<bool, FileError> {
+        self.next = place.number;
+        Ok(true)
     }
 }
 

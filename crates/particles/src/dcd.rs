@@ -6,7 +6,7 @@ use crate::binary::{BinaryFile, Numbers};
 use crate::scalar::{Order, Scalar};
 use crate::{
     Cell, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
-    frame_reader::FrameReader, schema::Schema, source::Source,
+    frame_reader::FrameReader, place::Place, schema::Schema, source::Source,
 };
 use glam::DVec3;
 use std::sync::Arc;
@@ -308,6 +308,15 @@ impl FrameReader for Dcd {
 
     fn more(&mut self) -> Result<bool, FileError> {
         Ok(self.is_whole(self.next))
+    }
+
+    fn place(&self) -> Option<Place> {
+        Some(Place::new(0, self.next))
+    }
+
+    fn start_at(&mut self, place: &Place) -> Result<bool, FileError> {
+        self.next = place.number;
+        Ok(true)
     }
 }
 

@@ -5,7 +5,7 @@ use crate::lines::{Line, Lines};
 use crate::schema::{Schema, Slot};
 use crate::{
     Cell, FileError, Format, Kind, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
-    fields::fixed, frame_reader::FrameReader, naming, number, source::Source,
+    fields::fixed, frame_reader::FrameReader, naming, number, place::Place, source::Source,
 };
 use glam::DVec3;
 use memchr::memchr_iter;
@@ -211,6 +211,14 @@ impl FrameReader for Gro {
         let more = self.lines.next()?.is_some_and(|line| !line.is_blank());
         self.lines.back();
         Ok(more)
+    }
+
+    fn place(&self) -> Option<Place> {
+        self.lines.place()
+    }
+
+    fn start_at(&mut self, place: &Place) -> Result<bool, FileError> {
+        self.lines.start_at(place)
     }
 }
 

@@ -79,6 +79,7 @@ mod numpy;
 mod open_file;
 mod options;
 mod pdb;
+mod place;
 mod ply;
 mod poscar;
 mod pqr;

@@ -2,9 +2,9 @@
 
 pub(crate) use super::line::Line;
 use super::line::end_lines;
-use crate::{FileError, source::Source};
+use crate::{FileError, place::Place, source::Bytes, source::Source};
 use memchr::{memchr, memchr_iter};
-use std::io::{self, Read};
+use std::io::{self, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
@@ -18,7 +18,9 @@ const BLOCK: usize = 1 << 18;
 /// Reader of a file's lines.
 pub(crate) struct Lines {
     path: Arc<Path>,
-    reader: Box<dyn Read + Send>,
+    reader: Bytes,
+    /// Number of bytes of the file that were read.
+    read: u64,
     /// Bytes of the file; `start..end` is not yet consumed.
     buffer: Vec<u8>,
     start: usize,
@@ -35,6 +37,7 @@ pub(crate) struct Lines {
 impl Lines {
     pub(crate) fn new(source: Source) -> Self {
         let Source { path, mut head, reader, .. } = source;
+        let read = head.len() as u64;
         if head.starts_with(b"\xEF\xBB\xBF") {
             head.drain(..3);
         }
@@ -43,6 +46,7 @@ impl Lines {
         Self {
             path,
             reader,
+            read,
             buffer: head,
             start: 0,
             end,
@@ -189,9 +193,29 @@ impl Lines {
             }
         };
         self.end += length;
+        self.read += length as u64;
         self.settled += end_lines(&mut self.buffer[self.settled..self.end]);
         self.ended = length == 0;
         Ok(!self.ended)
+    }
+
+    /// Returns the place of the next line; `None` if the bytes can be read only once.
+    pub(crate) fn place(&self) -> Option<Place> {
+        let offset = self.read - (self.end - self.start) as u64;
+        matches!(self.reader, Bytes::File(_)).then(|| Place::new(offset, self.number as u64))
+    }
+
+    /// Starts at the place of a line, if the bytes can be read again. Returns whether it did.
+    pub(crate) fn start_at(&mut self, place: &Place) -> Result<bool, FileError> {
+        let Bytes::File(file) = &mut self.reader else { return Ok(false) };
+        self.number = place.number as usize;
+        if let Err(error) = file.seek(SeekFrom::Start(place.offset)) {
+            return Err(self.failed(&error));
+        }
+        self.read = place.offset;
+        (self.start, self.end, self.settled, self.last) = (0, 0, 0, 0);
+        (self.ended, self.returned) = (false, false);
+        Ok(true)
     }
 
     /// Returns an error after the last line.
@@ -229,7 +253,7 @@ mod tests {
     }
 
     fn lines(text: &str, drop: usize) -> Lines {
-        let reader = Box::new(SmallReads(text.as_bytes().to_vec(), drop));
+        let reader = Bytes::stream(SmallReads(text.as_bytes().to_vec(), drop));
         let progress = ReadProgress::default();
         Lines::new(Source { path: Path::new("p").into(), head: Vec::new(), reader, progress })
     }
@@ -338,7 +362,7 @@ mod tests {
     }
 
     fn failing(kinds: &[io::ErrorKind]) -> Lines {
-        let reader = Box::new(Fails(b"one\ntwo\n", kinds.to_vec()));
+        let reader = Bytes::stream(Fails(b"one\ntwo\n", kinds.to_vec()));
         let progress = ReadProgress::default();
         Lines::new(Source { path: Path::new("p").into(), head: Vec::new(), reader, progress })
     }

@@ -5,7 +5,7 @@ use crate::lines::{Line, Lines};
 use crate::schema::{Schema, Slot};
 use crate::{
     Cell, FileError, Format, Kind, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
-    fields::Fields, frame_reader::FrameReader, naming, number, source::Source,
+    fields::Fields, frame_reader::FrameReader, naming, number, place::Place, source::Source,
 };
 use std::path::Path;
 use std::sync::Arc;
@@ -165,6 +165,14 @@ impl FrameReader for Mol2 {
 
     fn more(&mut self) -> Result<bool, FileError> {
         self.find()
+    }
+
+    fn place(&self) -> Option<Place> {
+        self.lines.place()
+    }
+
+    fn start_at(&mut self, place: &Place) -> Result<bool, FileError> {
+        self.lines.start_at(place)
     }
 }
 

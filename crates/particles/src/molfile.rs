@@ -6,7 +6,7 @@ use crate::fields::{Fields, fixed};
 use crate::lines::{Line, Lines};
 use crate::{
     Bonds, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
-    frame_reader::FrameReader, number, schema::Schema, source::Source,
+    frame_reader::FrameReader, number, place::Place, schema::Schema, source::Source,
 };
 use std::sync::Arc;
 
@@ -243,6 +243,14 @@ impl FrameReader for Molfile {
 
     fn more(&mut self) -> Result<bool, FileError> {
         self.lines.more()
+    }
+
+    fn place(&self) -> Option<Place> {
+        self.lines.place()
+    }
+
+    fn start_at(&mut self, place: &Place) -> Result<bool, FileError> {
+        self.lines.start_at(place)
     }
 }
 

@@ -14,7 +14,7 @@ use crate::source::{Source, is_standard_input};
 use crate::{
     Bonds, Cell, Element, ElementSource, FileError, Format, Kind, LengthUnit, ParticleFrame,
     ReadOptions, ReadProgress, Role, builder::Builder, fields::fixed, frame_reader::FrameReader,
-    number,
+    number, place::Place,
 };
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -74,12 +74,18 @@ pub(crate) struct Pdb {
     /// The columns of rows, with the indices that the schema has.
     columns: Vec<Column>,
     is_pdbqt: bool,
+    known: Arc<Known>,
+    /// The records of bonds, if they are read.
+    bonds: Option<BondRecords>,
+}
+
+/// What records say of all models after them.
+#[derive(Clone, Default)]
+struct Known {
     cell: Option<Cell>,
     /// True if each `CRYST1` follows its model, as it does if none precedes the first model.
     cell_follows: bool,
     title: String,
-    /// The records of bonds, if they are read.
-    bonds: Option<BondRecords>,
 }
 
 /// Serial number of an atom, as text: it may be hexadecimal or hybrid-36.
@@ -131,10 +137,16 @@ impl Pdb {
         let typed = options.columns.roles.iter().any(|(role, _)| *role == Role::Kind);
         let named = |schema| Arc::new(if typed { schema } else { of_atom_names(schema) });
         let lines = Lines::new(source);
-        let title = String::new();
         let bonds = options.reads_bonds().then_some(BondRecords { last: None });
         let schema = schema.map(named);
-        Self { lines, schema, columns, is_pdbqt, cell: None, cell_follows: false, title, bonds }
+        Self { lines, schema, columns, is_pdbqt, known: Arc::default(), bonds }
+    }
+
+    /// Notes the end of a model.
+    fn end_model(&mut self) {
+        if self.known.cell.is_none() {
+            Arc::make_mut(&mut self.known).cell_follows = true;
+        }
     }
 }
 
@@ -160,7 +172,7 @@ impl FrameReader for Pdb {
             // the next frame.
             let belongs = match record {
                 Record::Bond | Record::EndModel | Record::End => true,
-                Record::Cell => self.cell_follows,
+                Record::Cell => self.known.cell_follows,
                 _ => line.is_blank(),
             };
             if ended && !belongs {
@@ -190,8 +202,8 @@ impl FrameReader for Pdb {
                         builder.put(slot, &line, fixed(line.bytes, start, end))?;
                     }
                 }
-                Record::Cell => self.cell = cell(&line)?,
-                Record::Title => add_title(&mut self.title, line.bytes),
+                Record::Cell => Arc::make_mut(&mut self.known).cell = cell(&line)?,
+                Record::Title => add_title(&mut Arc::make_mut(&mut self.known).title, line.bytes),
                 Record::Begin if atoms => {
                     self.lines.back();
                     at_end = false;
@@ -200,11 +212,11 @@ impl FrameReader for Pdb {
                 Record::Bond if reads_bonds => own_bonds.extend(bonds_of(line.bytes)),
                 Record::EndModel if atoms => {
                     ended = true;
-                    self.cell_follows |= self.cell.is_none();
+                    self.end_model();
                 }
                 Record::End => {
                     ended = atoms;
-                    self.cell_follows = false;
+                    Arc::make_mut(&mut self.known).cell_follows = false;
                 }
                 Record::Bond | Record::Begin | Record::EndModel | Record::Other => (),
             }
@@ -220,8 +232,13 @@ impl FrameReader for Pdb {
             add_bonds(path, &mut frame, list, &serials)?;
         }
         alternates.choose(&mut frame);
-        let title = self.title.split_whitespace().collect::<Vec<_>>().join(" ");
-        Ok(Some(ParticleFrame { title, cell: self.cell, unit: LengthUnit::Angstrom, ..frame }))
+        let title = self.known.title.split_whitespace().collect::<Vec<_>>().join(" ");
+        Ok(Some(ParticleFrame {
+            title,
+            cell: self.known.cell,
+            unit: LengthUnit::Angstrom,
+            ..frame
+        }))
     }
 
     fn skip(&mut self) -> Result<bool, FileError> {
@@ -229,18 +246,18 @@ impl FrameReader for Pdb {
         while let Some(line) = self.lines.next()? {
             match Record::of(line.bytes) {
                 Record::Atom => atoms = true,
-                Record::Cell => self.cell = cell(&line)?,
-                Record::Title => add_title(&mut self.title, line.bytes),
+                Record::Cell => Arc::make_mut(&mut self.known).cell = cell(&line)?,
+                Record::Title => add_title(&mut Arc::make_mut(&mut self.known).title, line.bytes),
                 Record::Begin if atoms => {
                     self.lines.back();
                     break;
                 }
                 Record::EndModel if atoms => {
-                    self.cell_follows |= self.cell.is_none();
+                    self.end_model();
                     break;
                 }
                 Record::End => {
-                    self.cell_follows = false;
+                    Arc::make_mut(&mut self.known).cell_follows = false;
                     if atoms {
                         break;
                     }
@@ -253,6 +270,19 @@ impl FrameReader for Pdb {
 
     fn more(&mut self) -> Result<bool, FileError> {
         self.skip()
+    }
+
+    fn place(&self) -> Option<Place> {
+        Some(self.lines.place()?.carrying(&self.known))
+    }
+
+    fn start_at(&mut self, place: &Place) -> Result<bool, FileError> {
+        let Some(known) = place.carried() else { return Ok(false) };
+        let started = self.lines.start_at(place)?;
+        if started {
+            self.known = known;
+        }
+        Ok(started)
     }
 }
 

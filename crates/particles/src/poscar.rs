@@ -5,7 +5,7 @@ use crate::lines::{Line, Lines};
 use crate::schema::{Naming, Schema, Slot};
 use crate::{
     Cell, Element, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
-    fields::Fields, frame_reader::FrameReader, number, source::Source,
+    fields::Fields, frame_reader::FrameReader, number, place::Place, source::Source,
 };
 use glam::DVec3;
 use std::sync::Arc;
@@ -23,7 +23,13 @@ const COMMENT: &[u8] = b"!#";
 pub(crate) struct Poscar {
     lines: Lines,
     schema: Result<Arc<Schema>, String>,
-    header: Option<Header>,
+    known: Arc<Known>,
+}
+
+/// Facts of earlier frames.
+#[derive(Clone, Default)]
+struct Known {
+    header: Option<Arc<Header>>,
     /// True if the file is XDATCAR.
     several: bool,
     done: bool,
@@ -45,7 +51,7 @@ impl Poscar {
     pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
         let names = ["species", "x", "y", "z"].map(str::to_owned).into();
         let schema = Schema::new(names, options).map(Arc::new);
-        Self { lines: Lines::new(source), schema, header: None, several: false, done: false }
+        Self { lines: Lines::new(source), schema, known: Arc::default() }
     }
 
     fn header(&mut self) -> Result<Header, FileError> {
@@ -106,17 +112,18 @@ impl Poscar {
     /// Reads what precedes the positions of a frame. Returns whether they are fractional; `None` if there is no
     /// other frame.
     fn start(&mut self) -> Result<Option<bool>, FileError> {
-        if self.done || !self.lines.more()? {
+        if self.known.done || !self.lines.more()? {
             return Ok(None);
         }
         let line = self.lines.require("its title")?;
         let again =
-            self.header.is_some() && line.bytes.trim_ascii_start().starts_with(CONFIGURATION);
+            self.known.header.is_some() && line.bytes.trim_ascii_start().starts_with(CONFIGURATION);
         if again {
             return Ok(Some(true));
         }
         self.lines.back();
-        self.header = Some(self.header()?);
+        let header = Some(Arc::new(self.header()?));
+        Arc::make_mut(&mut self.known).header = header;
         let mut line = self.lines.require("its positions")?;
         let first = |line: &Line| line.bytes.trim_ascii_start().first().map(u8::to_ascii_lowercase);
         if first(&line) == Some(b's') {
@@ -131,8 +138,9 @@ impl Poscar {
                 return Err(line.whole("not a kind of coordinates").with_help(help));
             }
         };
-        self.several = is_configuration;
-        self.done = !is_configuration;
+        let known = Arc::make_mut(&mut self.known);
+        known.several = is_configuration;
+        known.done = !is_configuration;
         Ok(Some(fractional))
     }
 }
@@ -157,7 +165,7 @@ impl FrameReader for Poscar {
     fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
         let schema = self.schema.clone().map_err(|message| self.lines.ended(message))?;
         let Some(fractional) = self.start()? else { return Ok(None) };
-        let Some(header) = self.header.take() else { return Ok(None) };
+        let Some(header) = self.known.header.clone() else { return Ok(None) };
         let naming = if header.has_symbols { Naming::Symbols } else { Naming::Types };
         let schema = Arc::new(Schema { naming, ..Schema::clone(&schema) });
         let mut builder = Builder::new(self.lines.path(), Format::Poscar, &schema);
@@ -179,12 +187,12 @@ impl FrameReader for Poscar {
             }
         }
         // Velocities may follow after a blank line.
-        if !self.several && self.lines.next()?.is_some_and(|line| first_three(&line).is_ok()) {
+        if !self.known.several && self.lines.next()?.is_some_and(|line| first_three(&line).is_ok())
+        {
             builder.warn_of_more_rows();
         }
         let frame = builder.finish();
         let (cell, title) = (Some(header.cell), header.title.clone());
-        self.header = Some(header);
         Ok(Some(ParticleFrame { cell, title, unit: LengthUnit::Angstrom, ..frame }))
     }
 
@@ -192,13 +200,26 @@ impl FrameReader for Poscar {
         if self.start()?.is_none() {
             return Ok(false);
         }
-        let species = self.header.iter().flat_map(|header| &header.species);
+        let species = self.known.header.iter().flat_map(|header| &header.species);
         let rows = species.fold(0, |rows: u64, (_, count)| rows.saturating_add(*count));
         Ok(self.lines.skip(rows)? == rows)
     }
 
     fn more(&mut self) -> Result<bool, FileError> {
-        if self.several { self.lines.more() } else { Ok(false) }
+        if self.known.several { self.lines.more() } else { Ok(false) }
+    }
+
+    fn place(&self) -> Option<Place> {
+        Some(self.lines.place()?.carrying(&self.known))
+    }
+
+    fn start_at(&mut self, place: &Place) -> Result<bool, FileError> {
+        let Some(known) = place.carried() else { return Ok(false) };
+        let started = self.lines.start_at(place)?;
+        if started {
+            self.known = known;
+        }
+        Ok(started)
     }
 }
 

@@ -9,6 +9,7 @@ use crate::{
     fields::{Fields, fixed},
     frame_reader::FrameReader,
     number,
+    place::Place,
     source::Source,
 };
 use std::path::Path;
@@ -125,6 +126,14 @@ impl FrameReader for Pqr {
 
     fn more(&mut self) -> Result<bool, FileError> {
         self.skip()
+    }
+
+    fn place(&self) -> Option<Place> {
+        self.lines.place()
+    }
+
+    fn start_at(&mut self, place: &Place) -> Result<bool, FileError> {
+        self.lines.start_at(place)
     }
 }
 

@@ -3,8 +3,17 @@
 use crate::source::{Source, is_standard_input};
 use crate::{
     AlignBy, BondSource, Element, ElementSource, FileError, Format, FrameChoice, ParticleFrame,
-    ReadOptions, Role, derived::Derived, formats, frame_reader::FrameReader, ids,
-    shapes::ShapeColumns, smoothing::Window, sniff, superposition::Reference, topology::Joined,
+    ReadOptions, Role,
+    derived::Derived,
+    formats,
+    frame_reader::FrameReader,
+    ids,
+    place::{FrameIndex, Mark, Place},
+    shapes::ShapeColumns,
+    smoothing::Window,
+    sniff,
+    superposition::Reference,
+    topology::Joined,
     trails::History,
 };
 use std::path::{Path, PathBuf};
@@ -25,6 +34,10 @@ pub struct Frames {
     trails: Option<History>,
     /// Options with which the first frame is read, and it itself once it is needed.
     align: Option<Alignment>,
+    /// Number of frames around each one that are averaged with it or in its trails.
+    around: u64,
+    /// Places of frames, if they are noted.
+    index: Option<FrameIndex>,
     /// Number of frames that were read or skipped.
     passed: u64,
     failed: bool,
@@ -77,9 +90,86 @@ impl Frames {
                 options: ReadOptions { align: None, trail: 0, columns, ..options.clone() },
                 reference: None,
             }),
+            around: u64::from(options.smooth) + u64::from(options.trail),
+            index: None,
             passed: 0,
             failed: false,
         })
+    }
+
+    /// Takes the index of the file, to which it adds the places of frames that are passed.
+    pub(crate) fn with_index(self, index: &FrameIndex) -> Self {
+        let own = Self { index: Some(index.clone()), ..self };
+        own.note();
+        own
+    }
+
+    /// Notes where the next frame begins, unless frames after it have been read.
+    fn note(&self) {
+        if self.smoothing.is_none()
+            && let Some(index) = &self.index
+            && let Some(place) = self.reader.place()
+        {
+            index.note(self.passed, place);
+        }
+    }
+
+    /// Returns the last known place that is not after this frame.
+    fn mark(&self, frame: u64) -> Option<Mark> {
+        self.index.as_ref()?.before(frame)
+    }
+
+    /// Returns whether [`Self::go_to`] finds this frame, though it may have been passed.
+    pub(crate) fn reaches(&self, frame: u64) -> bool {
+        let goes_back = || self.reader.place().is_some() && self.mark(frame).is_some();
+        !self.failed
+            && (self.around == 0 || self.passed == 0)
+            && (self.passed <= frame || goes_back())
+    }
+
+    /// Passes the frames before this one with as little work as the format allows, but reads those that are averaged with it,
+    /// or in its trails; fewer if there are not so many.
+    fn go_to(&mut self, frame: u64) -> Result<(), FileError> {
+        let passes = self.around == 0 || self.passed == 0;
+        let first = if passes { frame.saturating_sub(self.around) } else { 0 };
+        if let Some(mark) = self.mark(first)
+            && (self.passed > frame || self.passed < mark.frame)
+            && self.reader.start_at(&mark.place)?
+        {
+            self.passed = mark.frame;
+        }
+        while self.passed < frame {
+            let passed = if self.passed < first { self.pass_frame() } else { self.skip_frame() };
+            if !passed? {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads this frame, which [`Self::reaches`].
+    pub(crate) fn read_at(&mut self, frame: u64) -> Result<ParticleFrame, FileError> {
+        self.go_to(frame)?;
+        let found = if self.passed == frame { self.next().transpose()? } else { None };
+        found.ok_or_else(|| match self.passed {
+            0 if frame == 0 => FileError::whole_file(&self.path, "holds no particles"),
+            count => {
+                let message = format!("has no frame {frame}, only {count} (the first is 0)");
+                FileError::whole_file(&self.path, message)
+            }
+        })
+    }
+
+    /// Passes all complete frames, and returns their number.
+    pub(crate) fn pass_all(&mut self) -> Result<u64, FileError> {
+        if let Some(mark) = self.mark(u64::MAX)
+            && self.passed < mark.frame
+            && self.reader.start_at(&mark.place)?
+        {
+            self.passed = mark.frame;
+        }
+        while self.pass_frame()? {}
+        Ok(self.passed)
     }
 
     /// Returns the next frame with its bonds, and with warnings about columns that are not drawn.
@@ -129,6 +219,7 @@ impl Frames {
             history.add(&self.path, &mut frame)?;
         }
         self.passed += 1;
+        self.note();
         let has_bonds = match self.wanted_bonds {
             BondSource::None => false,
             BondSource::OfCrystals => frame.is_crystal(),
@@ -138,15 +229,15 @@ impl Frames {
         Ok(Some(frame))
     }
 
-    /// Passes the frames before this one to `look`, until it returns true. Returns the number of frames that were read.
-    fn look_at(&mut self, index: u64, look: Look) -> Result<u64, FileError> {
-        for read in 0..index {
-            let Some(frame) = self.next().transpose()? else { return Ok(read) };
+    /// Passes the frames before this one to `look`, until it returns true.
+    fn look_at(&mut self, index: u64, look: Look) -> Result<(), FileError> {
+        for _ in 0..index {
+            let Some(frame) = self.next().transpose()? else { break };
             if look(frame)? {
-                return Ok(read + 1);
+                break;
             }
         }
-        Ok(index)
+        Ok(())
     }
 
     /// Returns the number of frames that were read or skipped.
@@ -167,7 +258,10 @@ impl Frames {
     /// Skips the next frame of the file, which isn't averaged with later ones.
     fn pass_frame(&mut self) -> Result<bool, FileError> {
         let skipped = self.reader.skip()?;
-        self.passed += u64::from(skipped);
+        if skipped {
+            self.passed += 1;
+            self.note();
+        }
         Ok(skipped)
     }
 
@@ -191,7 +285,10 @@ impl Frames {
             None => self.reader.skip(),
         };
         self.failed |= skipped.is_err();
-        self.passed += u64::from(matches!(skipped, Ok(true)));
+        if let Ok(true) = skipped {
+            self.passed += 1;
+            self.note();
+        }
         skipped
     }
 }
@@ -289,6 +386,14 @@ impl FrameReader for WithVolume {
     fn more(&mut self) -> Result<bool, FileError> {
         self.0.more()
     }
+
+    fn place(&self) -> Option<Place> {
+        self.0.place()
+    }
+
+    fn start_at(&mut self, place: &Place) -> Result<bool, FileError> {
+        self.0.start_at(place)
+    }
 }
 
 impl Iterator for Frames {
@@ -305,7 +410,7 @@ impl Iterator for Frames {
 }
 
 /// Reads the frame that the options select, unmodified: nothing is scaled or dropped. Earlier frames
-/// are skipped with little work. For the last frame, a file is read twice, and a truncated frame is
+/// are skipped with little work. For the last frame, a file is opened twice, and a truncated frame is
 /// not counted.
 ///
 /// # Errors
@@ -340,41 +445,25 @@ fn read_after(
     options: &ReadOptions,
     look: Option<Look>,
 ) -> Result<(ParticleFrame, bool), FileError> {
+    let places = FrameIndex::default();
     let index = match options.frame {
         FrameChoice::Index(index) => index,
         FrameChoice::Last if is_standard_input(path) => return last_of_stream(path, options, look),
-        FrameChoice::Last => count_frames(path, options)?.saturating_sub(1),
+        FrameChoice::Last => {
+            Frames::open(path, options)?.with_index(&places).pass_all()?.saturating_sub(1)
+        }
     };
-    let mut frames = Frames::open(path, options)?;
-    let mut before = 0;
+    let mut frames = Frames::open(path, options)?.with_index(&places);
     if let Some(look) = look.filter(|_| index > 0) {
         if is_standard_input(path) || !path.is_file() {
-            before = frames.look_at(index, look)?;
+            frames.look_at(index, look)?;
         } else if let Ok(mut first) = Frames::open(path, options) {
             first
                 .look_at(index, look)
-                .or_else(|error| if first.failed { Ok(0) } else { Err(error) })?;
+                .or_else(|error| if first.failed { Ok(()) } else { Err(error) })?;
         }
     }
-    // Frames that are averaged with the chosen one, or in its trails, are read.
-    let around = u64::from(options.smooth) + u64::from(options.trail);
-    let passed = if before == 0 { index.saturating_sub(around) } else { 0 };
-    for before in before..index {
-        let skipped = if before < passed { frames.pass_frame() } else { frames.skip_frame() };
-        if !skipped? {
-            let message = format!("has no frame {index}, only {before} (the first is 0)");
-            return Err(FileError::whole_file(path, message));
-        }
-    }
-    let frame = frames.next_frame()?;
-    let mut frame = match (frame, index) {
-        (Some(frame), _) => frame,
-        (None, 0) => return Err(FileError::whole_file(path, "holds no particles")),
-        (None, count) => {
-            let message = format!("has no frame {index}, only {count} (the first is 0)");
-            return Err(FileError::whole_file(path, message));
-        }
-    };
+    let mut frame = frames.read_at(index)?;
     let has_several = index > 0 || frames.more()?;
     if options.frame == FrameChoice::default() && has_several {
         frame
@@ -441,10 +530,5 @@ impl FrameCount {
 ///
 /// The file cannot be read, or its format is unknown.
 pub fn count_frames(path: &Path, options: &ReadOptions) -> Result<u64, FileError> {
-    let mut frames = Frames::open(path, options)?;
-    let mut count = 0;
-    while frames.reader.skip()? {
-        count += 1;
-    }
-    Ok(count)
+    Frames::open(path, options)?.pass_all()
 }

@@ -47,8 +47,32 @@ pub(crate) struct Source {
     /// The first [`HEAD`] bytes, or all if there are fewer; more after a long preamble.
     pub(crate) head: Vec<u8>,
     /// Reader of the bytes after the head.
-    pub(crate) reader: Box<dyn Read + Send>,
+    pub(crate) reader: Bytes,
     pub(crate) progress: ReadProgress,
+}
+
+/// Bytes of a file.
+pub(crate) enum Bytes {
+    /// As they are in the file, in which a reader can start anywhere.
+    File(CountedFile),
+    /// Decoded, or of a pipe.
+    Stream(Box<dyn Read + Send>),
+}
+
+impl Bytes {
+    /// Creates a reader of bytes that can be read only once.
+    pub(crate) fn stream(reader: impl Read + Send + 'static) -> Self {
+        Self::Stream(Box::new(reader))
+    }
+}
+
+impl Read for Bytes {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        match self {
+            Self::File(file) => file.read(buffer),
+            Self::Stream(stream) => stream.read(buffer),
+        }
+    }
 }
 
 /// Returns whether this path means standard input.
@@ -61,17 +85,19 @@ impl Source {
     pub(crate) fn open(path: &Path, progress: &ReadProgress) -> Result<Self, FileError> {
         let path: Arc<Path> = path.into();
         let fault = |error: &io::Error| FileError::unreadable(&path, error);
-        let mut raw: Box<dyn Read + Send> = if is_standard_input(&path) {
-            Box::new(io::stdin())
+        let mut raw = if is_standard_input(&path) {
+            Bytes::stream(io::stdin())
         } else {
             let file = File::open(&path).map_err(|error| fault(&error))?;
-            Box::new(CountedFile::new(file, progress))
+            let regular = file.metadata().is_ok_and(|data| data.is_file());
+            let file = CountedFile::new(file, progress);
+            if regular { Bytes::File(file) } else { Bytes::stream(file) }
         };
         let head = head(&mut raw).map_err(|error| fault(&error))?;
         let mut source = Self { path: path.clone(), head, reader: raw, progress: progress.clone() };
         if let Some(compression) = Compression::of(&source.head) {
             source = source
-                .decoded(|compressed| compression.decoder(compressed))
+                .decoded(|compressed| Bytes::Stream(compression.decoder(compressed)))
                 .map_err(|error| fault(&error))?;
             if let Some(inner) = Compression::of(&source.head) {
                 let message =
@@ -80,7 +106,7 @@ impl Source {
             }
         }
         if let Some(unit) = utf16::mark(&source.head) {
-            let decode = |units| -> Box<dyn Read + Send> { Box::new(Utf16::new(units, unit)) };
+            let decode = |units| Bytes::stream(Utf16::new(units, unit));
             source = source.decoded(decode).map_err(|error| fault(&error))?;
         }
         source.read_preamble().map_err(|error| fault(&error))?;
@@ -90,7 +116,7 @@ impl Source {
     /// Returns the source of the decoded bytes.
     fn decoded(
         self,
-        decode: impl FnOnce(Chain<Cursor<Vec<u8>>, Box<dyn Read + Send>>) -> Box<dyn Read + Send>,
+        decode: impl FnOnce(Chain<Cursor<Vec<u8>>, Bytes>) -> Bytes,
     ) -> io::Result<Self> {
         let mut reader = decode(Cursor::new(self.head).chain(self.reader));
         Ok(Self { path: self.path, head: head(&mut reader)?, reader, progress: self.progress })
@@ -261,7 +287,7 @@ mod tests {
 
     /// Returns the length of the head after its extension past comments.
     fn head_of(content: impl Read + Send + 'static) -> usize {
-        let mut reader: Box<dyn Read + Send> = Box::new(content);
+        let mut reader = Bytes::stream(content);
         let head = head(&mut reader).expect("memory");
         let (path, progress) = (Path::new("p").into(), ReadProgress::default());
         let mut source = Source { path, head, reader, progress };

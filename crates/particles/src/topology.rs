@@ -3,7 +3,7 @@
 use crate::ids::{self, ID, is_id};
 use crate::{
     BondSource, Bonds, Columns, FileError, ParticleFrame, Radii, ReadOptions, Role, aliases,
-    error::clipped, frame_reader::FrameReader, reader, schema::unknown_column,
+    error::clipped, frame_reader::FrameReader, place::Place, reader, schema::unknown_column,
 };
 use std::path::{Path, PathBuf};
 
@@ -205,5 +205,13 @@ impl FrameReader for Joined {
 
     fn more(&mut self) -> Result<bool, FileError> {
         self.frames.more()
+    }
+
+    fn place(&self) -> Option<Place> {
+        self.frames.place()
+    }
+
+    fn start_at(&mut self, place: &Place) -> Result<bool, FileError> {
+        self.frames.start_at(place)
     }
 }

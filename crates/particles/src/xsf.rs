@@ -8,6 +8,7 @@ use crate::{
     line,
     lines::{Line, Lines},
     number,
+    place::Place,
     schema::Schema,
     source::Source,
 };
@@ -32,6 +33,12 @@ const STRUCTURES: [(&[u8], [bool; 3]); 4] = [
 pub(crate) struct Xsf {
     lines: Lines,
     options: ReadOptions,
+    known: Arc<Known>,
+}
+
+/// What frames say of those after them, too.
+#[derive(Clone)]
+struct Known {
     cell: Option<Cell>,
     periodic: [bool; 3],
 }
@@ -45,8 +52,8 @@ enum Atoms {
 
 impl Xsf {
     pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
-        let lines = Lines::new(source);
-        Self { lines, options: options.clone(), cell: None, periodic: [true; 3] }
+        let known = Arc::new(Known { cell: None, periodic: [true; 3] });
+        Self { lines: Lines::new(source), options: options.clone(), known }
     }
 
     /// Moves to the atoms of the next frame, if there is one.
@@ -54,10 +61,13 @@ impl Xsf {
         while let Some(line) = line(&mut self.lines)? {
             let Some(keyword) = fields(line.bytes).next() else { continue };
             if let Some((_, periodic)) = STRUCTURES.iter().find(|(own, _)| *own == keyword) {
-                self.periodic = *periodic;
+                Arc::make_mut(&mut self.known).periodic = *periodic;
             }
             match keyword {
-                b"PRIMVEC" => self.cell = self.vectors()?,
+                b"PRIMVEC" => {
+                    let cell = self.vectors()?;
+                    Arc::make_mut(&mut self.known).cell = cell;
+                }
                 b"PRIMCOORD" => {
                     let line = require(&mut self.lines, "its number of atoms")?;
                     let count = line.whole_number(line.fields().next().unwrap_or_default())?;
@@ -81,7 +91,7 @@ impl Xsf {
             };
             *vector = DVec3::new(x, y, z);
         }
-        Ok(Cell { origin: DVec3::ZERO, vectors, periodic: self.periodic }.declared())
+        Ok(Cell { origin: DVec3::ZERO, vectors, periodic: self.known.periodic }.declared())
     }
 }
 
@@ -110,12 +120,25 @@ impl FrameReader for Xsf {
             let message = format!("the coordinates end after {rows} of {count} atoms");
             return Err(self.lines.ended(message));
         }
-        let cell = self.cell.filter(|_| self.periodic != [false; 3]);
+        let cell = self.known.cell.filter(|_| self.known.periodic != [false; 3]);
         Ok(Some(ParticleFrame { cell, unit: LengthUnit::Angstrom, ..builder.finish() }))
     }
 
     fn more(&mut self) -> Result<bool, FileError> {
         Ok(self.find()?.is_some())
+    }
+
+    fn place(&self) -> Option<Place> {
+        Some(self.lines.place()?.carrying(&self.known))
+    }
+
+    fn start_at(&mut self, place: &Place) -> Result<bool, FileError> {
+        let Some(known) = place.carried() else { return Ok(false) };
+        let started = self.lines.start_at(place)?;
+        if started {
+            self.known = known;
+        }
+        Ok(started)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::lines::{Line, Lines};
 use crate::schema::{Naming, Schema};
 use crate::{
     Cell, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, Role, builder::Builder,
-    frame_reader::FrameReader, number, options::component_names, source::Source,
+    frame_reader::FrameReader, number, options::component_names, place::Place, source::Source,
 };
 use glam::DVec3;
 use std::sync::Arc;
@@ -109,6 +109,14 @@ impl FrameReader for Xyz {
 
     fn more(&mut self) -> Result<bool, FileError> {
         self.lines.more()
+    }
+
+    fn place(&self) -> Option<Place> {
+        self.lines.place()
+    }
+
+    fn start_at(&mut self, place: &Place) -> Result<bool, FileError> {
+        self.lines.start_at(place)
     }
 }
 

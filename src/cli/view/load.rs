@@ -15,7 +15,6 @@ use spherule_render::compose::{self, CellRequest, Labels, Request, Staged, Subje
 use spherule_render::scene::particles::{
     ArrowSizes, Codes, Coloring, ColumnColors, FrameChoice, Kind, Kinds, Model, NumberColumn,
     ParticleFrame, ParticleStyle, Particles, ReadOptions, Role, Selection, TrajectoryReader,
-    count_frames,
 };
 use spherule_render::scene::{Pose, Rgb, Scene, Spheres};
 use spherule_render::world::framing;
@@ -248,8 +247,9 @@ impl Loader {
         if frames.get().is_some() || std::mem::replace(&mut self.counts, true) {
             return None;
         }
+        let count = self.trajectory.counter(&path, &options);
         Some(move || {
-            let count = count_frames(&path, &options).ok()?;
+            let count = count().ok()?;
             Some(*frames.get_or_init(|| count))
         })
     }
@@ -277,7 +277,7 @@ impl Loader {
         let facts = read.facts(setup);
         if self.frames.get().is_none()
             && let Source::Particles(path, options) = &setup.source
-            && let Some(count) = count_at_once(path, options)
+            && let Some(count) = count_at_once(path, options, &mut self.trajectory)
         {
             self.frames.get_or_init(|| count);
         }
@@ -455,12 +455,16 @@ fn other_columns(particles: &Particles) -> impl Iterator<Item = &str> {
 }
 
 /// Number of frames of a file, if it is fast to count. Standard input has one, because it can be read only once.
-fn count_at_once(path: &Path, options: &ReadOptions) -> Option<u64> {
+fn count_at_once(
+    path: &Path,
+    options: &ReadOptions,
+    trajectory: &mut TrajectoryReader,
+) -> Option<u64> {
     if path.as_os_str() == "-" {
         return Some(1);
     }
     let short = path.metadata().is_ok_and(|data| data.is_file() && data.len() < SHORT);
-    short.then(|| count_frames(path, options).ok()).flatten()
+    short.then(|| trajectory.counter(path, options)().ok()).flatten()
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //! Biology 16, 2020; github.com/molstar/BinaryCIF), to the text of the categories that are read.
 
 use crate::scalar::{Order, Scalar};
-use crate::source::{self, Source};
+use crate::source::{self, Bytes, Source};
 use crate::{FileError, memory};
 use serde::Deserialize;
 use std::io::{Cursor, Read};
@@ -390,7 +390,7 @@ pub(in super::super) fn decoded(source: Source) -> Result<Source, FileError> {
         FileError { cut_off: true, ..fault(format!("is damaged: {message}")) }.with_help(help)
     })?;
     let text = Text { tables, table: 0, row: 0, pending: Cursor::default() };
-    let mut reader: Box<dyn Read + Send> = Box::new(text);
+    let mut reader = Bytes::stream(text);
     let head = source::head(&mut reader).map_err(|error| fault(error.to_string()))?;
     Ok(Source { path, head, reader, progress })
 }

@@ -197,11 +197,11 @@ fn is_blank(byte: u8) -> bool {
 mod tests {
     use super::*;
     use crate::ReadProgress;
-    use crate::source::Source;
+    use crate::source::{Bytes, Source};
 
     fn words(text: &str) -> Result<Vec<String>, String> {
         let head = text.as_bytes().to_vec();
-        let (reader, progress) = (Box::new(std::io::empty()), ReadProgress::default());
+        let (reader, progress) = (Bytes::stream(std::io::empty()), ReadProgress::default());
         let source = Source { path: Path::new("c").into(), head, reader, progress };
         let mut tokens = Tokens::new(Lines::new(source));
         let mut words = Vec::new();

@@ -5,7 +5,7 @@ use crate::binary::{BinaryFile, Numbers};
 use crate::scalar::{Order, Scalar};
 use crate::{
     FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
-    frame_reader::FrameReader, schema::Schema, source::Source,
+    frame_reader::FrameReader, place::Place, schema::Schema, source::Source,
 };
 use std::sync::Arc;
 
@@ -172,5 +172,14 @@ impl FrameReader for Trr {
     fn more(&mut self) -> Result<bool, FileError> {
         let found = self.find();
         super::pass(found, |_| true)
+    }
+
+    fn place(&self) -> Option<Place> {
+        Some(Place::new(self.at, self.next))
+    }
+
+    fn start_at(&mut self, place: &Place) -> Result<bool, FileError> {
+        (self.at, self.next) = (place.offset, place.number);
+        Ok(true)
     }
 }

@@ -7,7 +7,7 @@ use crate::binary::{BinaryFile, Numbers};
 use crate::scalar::{Order, Scalar};
 use crate::{
     FileError, Format, LengthUnit, ParticleFrame, ReadOptions, builder::Builder,
-    frame_reader::FrameReader, schema::Schema, source::Source,
+    frame_reader::FrameReader, place::Place, schema::Schema, source::Source,
 };
 use std::sync::Arc;
 
@@ -183,5 +183,14 @@ impl FrameReader for Xtc {
 
     fn more(&mut self) -> Result<bool, FileError> {
         Ok(self.at < self.file.length())
+    }
+
+    fn place(&self) -> Option<Place> {
+        Some(Place::new(self.at, self.next))
+    }
+
+    fn start_at(&mut self, place: &Place) -> Result<bool, FileError> {
+        (self.at, self.next) = (place.offset, place.number);
+        Ok(true)
     }
 }

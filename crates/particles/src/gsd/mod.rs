@@ -15,6 +15,7 @@ use crate::{
     bonds::{End, Listed},
     frame_reader::FrameReader,
     options::component_names,
+    place::Place,
     schema::unknown_column,
     shapes::SEMI_AXES,
     source::Source,
@@ -416,6 +417,15 @@ impl FrameReader for Gsd {
 
     fn more(&mut self) -> Result<bool, FileError> {
         Ok(self.next < self.file.frames())
+    }
+
+    fn place(&self) -> Option<Place> {
+        Some(Place::new(0, self.next))
+    }
+
+    fn start_at(&mut self, place: &Place) -> Result<bool, FileError> {
+        self.next = place.number;
+        Ok(true)
     }
 }
 

@@ -24,7 +24,7 @@ use crate::scalar::{Order, Scalar};
 use crate::schema::{Naming, Schema, Slot};
 use crate::{
     FileError, Format, ParticleFrame, ReadOptions, Role, binary::BinaryFile, builder::Builder,
-    foreign, frame_reader::FrameReader, source::Source,
+    foreign, frame_reader::FrameReader, place::Place, source::Source,
 };
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -245,5 +245,14 @@ impl FrameReader for Hdf5 {
 
     fn more(&mut self) -> Result<bool, FileError> {
         Ok(self.next < self.trajectory.frames)
+    }
+
+    fn place(&self) -> Option<Place> {
+        Some(Place::new(0, self.next))
+    }
+
+    fn start_at(&mut self, place: &Place) -> Result<bool, FileError> {
+        self.next = place.number;
+        Ok(true)
     }
 }

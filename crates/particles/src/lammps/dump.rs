@@ -5,7 +5,7 @@ use super::{unit, yaml};
 use crate::lines::{Line, Lines};
 use crate::{
     Cell, FileError, Format, LengthUnit, ParticleFrame, ReadOptions, Role, builder::Builder,
-    frame_reader::FrameReader, schema::Schema, source::Source,
+    frame_reader::FrameReader, place::Place, schema::Schema, source::Source,
 };
 use glam::DVec3;
 use std::sync::Arc;
@@ -26,7 +26,13 @@ const UNNAMED: [&str; 5] = ["id", "type", "xs", "ys", "zs"];
 pub(in super::super) struct Dump {
     lines: Lines,
     options: ReadOptions,
-    /// Units of the earlier frames: only the first must declare them.
+    known: Arc<Known>,
+}
+
+/// Facts of earlier frames.
+#[derive(Clone)]
+struct Known {
+    /// Units: only the first frame must declare them.
     units: LengthUnit,
     /// True after the first section. Other text may precede it.
     begun: bool,
@@ -46,9 +52,8 @@ pub(super) struct Head {
 
 impl Dump {
     pub(in super::super) fn new(source: Source, options: &ReadOptions) -> Self {
-        let lines = Lines::new(source);
-        let units = LengthUnit::Unknown;
-        Self { lines, options: options.clone(), units, begun: false, is_yaml: false }
+        let known = Known { units: LengthUnit::Unknown, begun: false, is_yaml: false };
+        Self { lines: Lines::new(source), options: options.clone(), known: Arc::new(known) }
     }
 
     /// Reads a frame up to the column names of atoms; returns `None` at the end of the file.
@@ -59,14 +64,18 @@ impl Dump {
             if line.is_blank() {
                 continue;
             }
-            if self.is_yaml || !self.begun && yaml::begins(line.bytes) {
-                self.is_yaml = true;
+            let Known { begun, is_yaml, .. } = *self.known;
+            if is_yaml || !begun && yaml::begins(line.bytes) {
                 self.lines.back();
-                return yaml::head(&mut self.lines, &mut self.units);
+                let known = Arc::make_mut(&mut self.known);
+                known.is_yaml = true;
+                return yaml::head(&mut self.lines, &mut known.units);
             }
-            self.begun |= line.bytes.starts_with(b"ITEM:");
-            if !self.begun {
-                continue;
+            if !begun {
+                if !line.bytes.starts_with(b"ITEM:") {
+                    continue;
+                }
+                Arc::make_mut(&mut self.known).begun = true;
             }
             any = true;
             let text = line.text();
@@ -95,7 +104,9 @@ impl Dump {
             "TIMESTEP" => head.step = Some(line.number(value)? as i64),
             "TIME" => head.time = Some(line.number(value)?),
             "NUMBER OF ATOMS" => head.count = Some(line.whole_number(value)?),
-            "UNITS" => self.units = unit(&String::from_utf8_lossy(value)),
+            "UNITS" => {
+                Arc::make_mut(&mut self.known).units = unit(&String::from_utf8_lossy(value));
+            }
             // A section of a later version: skip its lines up to the next section.
             _ => {
                 self.lines.back();
@@ -188,10 +199,10 @@ impl FrameReader for Dump {
         for atom in 0..count {
             let help = "the file is cut off; choose an earlier frame";
             let line = self.lines.row(atom, count, "atoms", help)?;
-            if atom == 0 && !self.is_yaml {
+            if atom == 0 && !self.known.is_yaml {
                 builder.warn_of_surplus(line.fields().count());
             }
-            if self.is_yaml {
+            if self.known.is_yaml {
                 builder.row(&line, yaml::values(&line))?;
             } else {
                 builder.row(&line, line.fields())?;
@@ -205,7 +216,7 @@ impl FrameReader for Dump {
             };
             unscale(&mut frame, &cell);
         }
-        let unit = match self.units {
+        let unit = match self.known.units {
             LengthUnit::Unknown if has_elements => LengthUnit::Angstrom,
             unit => unit,
         };
@@ -219,6 +230,19 @@ impl FrameReader for Dump {
 
     fn more(&mut self) -> Result<bool, FileError> {
         self.lines.more()
+    }
+
+    fn place(&self) -> Option<Place> {
+        Some(self.lines.place()?.carrying(&self.known))
+    }
+
+    fn start_at(&mut self, place: &Place) -> Result<bool, FileError> {
+        let Some(known) = place.carried() else { return Ok(false) };
+        let started = self.lines.start_at(place)?;
+        if started {
+            self.known = known;
+        }
+        Ok(started)
     }
 }
 

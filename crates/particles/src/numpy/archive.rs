@@ -6,7 +6,7 @@ use crate::builder::{Builder, clamp_channel, is_color, warn_of_colors};
 use crate::categories::{Codebook, add};
 use crate::{
     FileError, Format, Kind, NumberColumn, ParticleFrame, Radii, ReadOptions, Rgb, Role,
-    TextColumn, aliases, frame_reader::FrameReader, options::component_names,
+    TextColumn, aliases, frame_reader::FrameReader, options::component_names, place::Place,
     progress::CountedFile, schema::Schema, source::Source,
 };
 use std::collections::HashMap;
@@ -514,5 +514,14 @@ impl FrameReader for Npz {
 
     fn more(&mut self) -> Result<bool, FileError> {
         Ok(self.frame < self.count_frames()?)
+    }
+
+    fn place(&self) -> Option<Place> {
+        Some(Place::new(0, self.frame))
+    }
+
+    fn start_at(&mut self, place: &Place) -> Result<bool, FileError> {
+        self.frame = place.number;
+        Ok(true)
     }
 }

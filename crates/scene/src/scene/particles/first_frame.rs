@@ -100,6 +100,34 @@ impl TrajectoryReader {
         Ok((frame, self.first_frame.clone()))
     }
 
+    /// Reads a frame as [`Self::read_frame`], with types and texts in the order that it would have if no other frame than the
+    /// first one had been read.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`read_frame`](super::read_frame).
+    pub fn read_alone(
+        &mut self,
+        path: &Path,
+        options: &ReadOptions,
+    ) -> Result<(ParticleFrame, Option<FirstFrame>), FileError> {
+        let names = self.first_frame.is_some().then(|| self.names.clone());
+        let read = self.read_frame(path, options);
+        if let Some(names) = names {
+            self.names = names;
+        }
+        read
+    }
+
+    /// Returns what counts the complete frames of a file, and finds where they begin, as [`OpenFile::counter`].
+    pub fn counter(
+        &mut self,
+        path: &Path,
+        options: &ReadOptions,
+    ) -> impl FnOnce() -> Result<u64, FileError> + Send + use<> {
+        self.file.counter(path, options)
+    }
+
     /// Finds the choices of a file that can be read again, and the names of its first frame. What cannot be read is an error
     /// of whoever needs it.
     pub fn of_file(path: &Path, options: &ReadOptions, arrows: Option<&ArrowStyle>) -> Self {
