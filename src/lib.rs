@@ -159,8 +159,8 @@ pub mod compose {
     pub use spherule_render::compose::{
         AnnotationRequest, Axes, Bar, CameraRequest, CellRequest, Content, Descriptions, Fault,
         Focus, LabelText, Labels, LensRequest, LookAt, MeasureRequest, ROWS, Request, Sections,
-        Shared, Staged, Subject, Survey, Template, Value, change, choose, frame, light_ahead,
-        place, position, stage, zoom,
+        Shared, Staged, Subject, Survey, Template, Value, change, choose, extent, frame,
+        light_ahead, place, position, stage, zoom,
     };
 }
 

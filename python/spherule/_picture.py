@@ -173,22 +173,10 @@ class Picture:
             >>> path.stat().st_size > 0
             True
         """
-        import tempfile
-
         name = _values.path("path", path)
-        data = self._encoded(name, bits, quality)
-        folder = os.path.dirname(os.path.abspath(name))
-        descriptor, beside = tempfile.mkstemp(prefix=".spherule-", dir=folder)
-        try:
-            with os.fdopen(descriptor, "wb") as file:
-                file.write(data)
-            mask = os.umask(0)
-            os.umask(mask)
-            os.chmod(beside, 0o666 & ~mask)
-            os.replace(beside, name)
-        except BaseException:
-            os.unlink(beside)
-            raise
+        if is_page(name):
+            raise Error(f'{name}: a page names the particles of its scene: scene.save("{os.path.basename(name)}")')
+        write_whole(name, self._encoded(name, bits, quality))
 
     def _floats(self) -> npt.NDArray[np.float32]:
         import numpy as np
@@ -205,6 +193,29 @@ class Picture:
 
     def _repr_png_(self) -> bytes:
         return self.encode()
+
+
+def is_page(name: str) -> bool:
+    """Whether a name is that of a page of HTML."""
+    return os.path.splitext(name)[1].lower() in (".html", ".htm")
+
+
+def write_whole(name: str, data: bytes) -> None:
+    """Writes a file, which is replaced once the new one is complete."""
+    import tempfile
+
+    folder = os.path.dirname(os.path.abspath(name))
+    descriptor, beside = tempfile.mkstemp(prefix=".spherule-", dir=folder)
+    try:
+        with os.fdopen(descriptor, "wb") as file:
+            file.write(data)
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(beside, 0o666 & ~mask)
+        os.replace(beside, name)
+    except BaseException:
+        os.unlink(beside)
+        raise
 
 
 def _version() -> str:

@@ -204,14 +204,16 @@ class Scene:
         return cls.of_native(_native.Scene.load(name))
 
     @from_call
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes a scene file that loads as the same scene, with a ``.csv`` file of its spheres beside it.
+    def save(self, path: str | os.PathLike[str], **options: Unpack[RenderOptions]) -> None:
+        """Writes a scene file that loads as the same scene, with a ``.csv`` file of its spheres beside it; or a page of HTML.
 
         Args:
-            path: A name that ends in ``.toml``.
+            path: A name that ends in ``.toml``, or in ``.html``: a page that needs no server, with the picture, which tells
+                the particle under the pointer.
+            **options: Of a page, those of :meth:`render`.
 
         Raises:
-            Error: The file cannot be written.
+            Error: The file cannot be written, or anything that cannot be used.
 
         Example:
             >>> import pathlib, tempfile
@@ -220,7 +222,17 @@ class Scene:
             >>> len(Scene.load(path))
             2
         """
-        self._native.save(_values.path("path", path))
+        from ._picture import is_page, write_whole
+
+        name = _values.path("path", path)
+        if is_page(name):
+            picture = self.render(**options)
+            given = {own: value for own, value in options.items() if value is not None}
+            write_whole(name, self._native.page(_options.render_table(given), picture.encode()).encode())
+            return
+        if options:
+            raise Error(f"`{next(iter(options))}` is for pages, as in scene.save('figure.html')")
+        self._native.save(name)
 
     def __len__(self) -> int:
         """The number of spheres and ellipsoids."""

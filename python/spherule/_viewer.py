@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import collections
 import json
 import os
 import re
@@ -67,6 +66,11 @@ def _camera(state: Mapping[str, Any]) -> dict[str, Any]:
     return _keys(state["camera"]["line"])
 
 
+def _ids(state: Mapping[str, Any]) -> list[int]:
+    """Ids of the selected particles; one that has a word for it is left out."""
+    return [int(own["id"]) for own in state["picked"] if own["id"] is not None]
+
+
 if TYPE_CHECKING or _is_there:
 
     class Viewer(anywidget.AnyWidget):
@@ -84,11 +88,13 @@ if TYPE_CHECKING or _is_there:
             camera: The keys of the section ``[camera]``. Setting it moves the camera, and
                 ``spherule.render(..., camera=viewer.camera)`` renders with it.
             frame: The frame of a trajectory, from 0; setting it shows another one.
-            selection: The id of the particle that was clicked last, or its row if it has none; or nothing. ``picked`` is what
-                the file says of it.
+            selection: The ids of the particles that are selected, or their rows if they have none; in the order of their
+                selection, if these are four at most. Setting it selects and marks others, 1000 at most;
+                ``viewer.command("pick 'q < 0'")`` selects by a condition. ``picked`` is what the file says of the last one,
+                or None.
 
-        All four can be observed and linked to other widgets, as traits of :mod:`traitlets`; the last two follow the mouse
-        alone. They follow it while the kernel is idle.
+        All four can be observed and linked to other widgets, as traits of :mod:`traitlets`; all but ``picked`` can be set.
+        They follow the mouse while the kernel is idle.
 
         Raises:
             Error: As :func:`spherule.render`; or the program or ``anywidget`` is not installed.
@@ -117,7 +123,6 @@ if TYPE_CHECKING or _is_there:
                 self._loop: asyncio.AbstractEventLoop | None = asyncio.get_running_loop()
             except RuntimeError:
                 self._loop = None
-            self._picks: collections.deque[Any] = collections.deque()
             words = _words(given) if isinstance(source, (str, os.PathLike)) else None
             if words is not None:
                 words = [_values.path("source", source), *words]
@@ -138,6 +143,7 @@ if TYPE_CHECKING or _is_there:
             self._apply()
             self.observe(self._place_camera, "camera")
             self.observe(self._go_to_frame, "frame")
+            self.observe(self._select, "selection")
             self.on_msg(self._obey)
 
         @from_call
@@ -196,13 +202,11 @@ if TYPE_CHECKING or _is_there:
                 raise Error("the viewer is closed; open another one")
             return self._session
 
-        def _hear(self, text: str, message: dict[str, Any]) -> None:
+        def _hear(self, text: str, _: dict[str, Any]) -> None:
             if self._session is None:
                 return
             if self._is_shown:
                 self.send({"text": text})
-            if "picked" in message:
-                self._picks.append(message["picked"])
             # Traits change on the thread of the kernel alone; without its loop, after commands.
             if self._loop is not None and not self._loop.is_closed():
                 self._loop.call_soon_threadsafe(self._apply)
@@ -230,10 +234,9 @@ if TYPE_CHECKING or _is_there:
             if self.camera != (camera := _camera(state)):
                 self.camera = camera
             self.frame = state["frame"]
-            while self._picks:
-                picked = self._picks.popleft()
-                self.selection = [] if picked is None else [int(picked["id"])]
-                self.picked = None if picked is None else picked["text"]
+            picked = state["picked"]
+            self.selection = _ids(state)
+            self.picked = picked[-1]["text"] if picked else None
 
         def _place_camera(self, change: Any) -> None:
             if change["new"] == _camera(self._open().state):
@@ -244,6 +247,16 @@ if TYPE_CHECKING or _is_there:
         def _go_to_frame(self, change: Any) -> None:
             if change["new"] != self._open().state["frame"]:
                 self._ask(f"frame {change['new']}")
+
+        def _select(self, change: Any) -> None:
+            if change["new"] == _ids(self._open().state):
+                return
+            ids = [_values.integer("selection", own, 0) for own in change["new"]]
+            # Measures depend on the order of up to four.
+            several = [f"'id {own}'" for own in ids] if len(ids) <= 4 else [f"'id {' '.join(map(str, ids))}'"]
+            self._ask(" ".join(["pick", *several]))
+            if missing := set(ids) - set(self.selection):
+                raise Error(f"no particle {min(missing)} is shown")
 
         def _ask(self, line: str) -> None:
             try:

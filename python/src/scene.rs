@@ -3,13 +3,14 @@
 use crate::errors::{KEYWORDS, error, of_file};
 use crate::options::{ParticleTable, StyleTable};
 use crate::pools::pool;
-use crate::watch::Watcher;
+use crate::session::{RenderTable, page};
+use crate::watch::{self, Watcher};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use spherule::color::{self, Rgb};
 use spherule::compose::{
-    self, AnnotationRequest, CameraRequest, CellRequest, Content, LookAt, ROWS, Request, Shared,
-    Staged, Subject, Survey, Value,
+    self, AnnotationRequest, CameraRequest, CellRequest, Content, Labels, LookAt, ROWS, Request,
+    Shared, Staged, Subject, Survey, Value,
 };
 use spherule::particles::{FileError, NumberColumn, ParticleFrame, ReadOptions};
 use spherule::scene::particles::{
@@ -40,6 +41,8 @@ pub(crate) struct Scene {
     rows: Option<Arc<[u32]>>,
     /// Number of particles in the first frame of the file, if it has several.
     first_frame: Option<usize>,
+    /// Types and columns of the spheres, if it is of particles.
+    labels: Arc<Labels>,
 }
 
 /// A scene for work on other threads.
@@ -49,6 +52,7 @@ pub(crate) struct SharedScene {
     pub(crate) rows: Option<Arc<[u32]>>,
     /// Number of particles in the first frame of the file, if it has several.
     pub(crate) first_frame: Option<usize>,
+    pub(crate) labels: Arc<Labels>,
 }
 
 /// The text of a scene without its spheres, their places and radii, their materials, colors, rows in the user's
@@ -115,6 +119,7 @@ pub(crate) struct Numbered {
     rows: Option<Vec<u32>>,
     /// Number of particles in the first frame of the file, if it has several.
     first_frame: Option<usize>,
+    labels: Labels,
 }
 
 /// Why there is no scene.
@@ -210,6 +215,15 @@ impl Scene {
         py.detach(|| write(&self.lock(), &path)).map_err(|error| of_file(py, &error))
     }
 
+    /// The page of HTML of a PNG file that the settings render, with the names of its particles.
+    fn page(&self, py: Python<'_>, table: RenderTable, file: Vec<u8>) -> PyResult<String> {
+        let (request, pool) = table.request(py)?;
+        let scene = self.share();
+        let work = move |_: &watch::Shared| page(&pool, &scene, &request, file);
+        let (page, _) = Watcher::default().run_outside(py, work)?;
+        page.map_err(|fault| fault.raise(py))
+    }
+
     /// All of the scene, as `of_columns` takes it.
     fn columns<'py>(&self, py: Python<'py>) -> PyResult<SceneColumns<'py>> {
         let (text, spheres) = py
@@ -254,7 +268,7 @@ impl Scene {
         let color = color.as_chunks().0.iter().map(|&color| Rgb::from_array(color)).collect();
         scene.spheres = Spheres { x, y, z, radius, material, color };
         let rows = rows.map(|rows| rows.as_array().to_vec());
-        Ok(Self::of(Numbered { scene, rows, first_frame }))
+        Ok(Self::of(Numbered { scene, rows, first_frame, labels: Labels::default() }))
     }
 
     /// The number of spheres and ellipsoids.
@@ -299,8 +313,9 @@ impl Scene {
 }
 
 impl Scene {
-    pub(crate) fn of(Numbered { scene, rows, first_frame }: Numbered) -> Self {
-        Self { held: Arc::new(Mutex::new(scene)), rows: rows.map(Arc::from), first_frame }
+    pub(crate) fn of(Numbered { scene, rows, first_frame, labels }: Numbered) -> Self {
+        let (held, rows) = (Arc::new(Mutex::new(scene)), rows.map(Arc::from));
+        Self { held, rows, first_frame, labels: Arc::new(labels) }
     }
 
     pub(crate) fn share(&self) -> SharedScene {
@@ -308,6 +323,7 @@ impl Scene {
             scene: Arc::clone(&self.held),
             rows: self.rows.clone(),
             first_frame: self.first_frame,
+            labels: Arc::clone(&self.labels),
         }
     }
 
@@ -407,6 +423,7 @@ impl ViewTable {
             slice_mode: word("slice_mode", self.slice_mode.as_ref(), mode, &modes)?
                 .unwrap_or_default(),
             keeps_rows: true,
+            keeps_labels: true,
             ..Request::default()
         };
         match request.contradiction() {
@@ -443,7 +460,8 @@ fn complete(scene: spherule::Scene, request: &Request) -> Result<Numbered, Fault
     let content = Content::Scene(Box::new(scene));
     let mut staged = compose::stage(request, &subject(""), content, None)?;
     compose::choose(request, &mut staged)?;
-    Ok(Numbered { scene: staged.scene, rows: staged.rows, first_frame: None })
+    let Staged { scene, rows, labels, .. } = staged;
+    Ok(Numbered { scene, rows, first_frame: None, labels })
 }
 
 /// Particles, style and sections of a scene of particles.
@@ -560,7 +578,8 @@ impl Work {
         if let Some(sections) = &self.request.sections {
             staged.scene.warnings.extend(sections.scene.warnings.iter().cloned());
         }
-        Numbered { scene: staged.scene, rows: staged.rows, first_frame: staged.first_frame }
+        let Staged { scene, rows, first_frame, labels, .. } = staged;
+        Numbered { scene, rows, first_frame, labels }
     }
 
     /// Returns whether spheres may get other rows than their particles.

@@ -11,8 +11,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::ThreadPool;
 use spherule::World;
-use spherule::compose;
+use spherule::compose::{self, Descriptions};
 use spherule::denoise::{Asked, Choice, Denoiser, Judged, choose};
+use spherule::graphics::Figure;
+use spherule::image::Format;
 use spherule::layers::{Layer, Layers, layers};
 use spherule::overlay::{Canvas, annotations};
 use spherule::particles::internals::memory;
@@ -458,6 +460,33 @@ pub(crate) fn render<'py>(
     };
     let (shown, interrupt) = Watcher::new(stop, report).run_outside(py, work)?;
     show(py, shown, interrupt)
+}
+
+/// Returns the page of HTML of a PNG file that the settings render, with the names of its particles.
+pub(crate) fn page(
+    pool: &ThreadPool,
+    shared: &SharedScene,
+    request: &Request,
+    file: Vec<u8>,
+) -> Result<String, Fault> {
+    let mut scene = shared.scene.lock().unwrap_or_else(PoisonError::into_inner);
+    let kept = (scene.settings.clone(), scene.camera.clone());
+    let locked = &mut *scene;
+    let made = pool.install(|| {
+        compose::change(&mut locked.settings, &request.settings, &request.keys);
+        compose::frame(locked, false, None)?;
+        let Settings { width, height, .. } = locked.settings;
+        let samples = u64::from(width) * u64::from(height);
+        let world = World::build_with(locked, World::builder(locked.spheres.len(), samples))?;
+        let descriptions = Descriptions::new(&shared.labels, compose::extent(locked));
+        let mut figure = Figure::new(&locked.title, false);
+        let options = Options::default();
+        let numbers = descriptions.numbers(&world, &locked.settings, &options, &mut figure)?;
+        figure.add(Format::Png, file, (width, height), &numbers);
+        Ok(figure.file())
+    });
+    (scene.settings, scene.camera) = kept;
+    made
 }
 
 /// A render that is refined step by step.

@@ -1,6 +1,7 @@
 """Pictures: those of the program, to the byte, in every way to ask for them."""
 
 import asyncio
+import base64
 import pickle
 import subprocess
 import threading
@@ -339,3 +340,35 @@ def test_scenes_are_pickled(cloud):
     copy = pickle.loads(pickle.dumps(scene))
     assert len(copy) == 1000
     assert np.array_equal(scene.render(**SMALL).pixels, copy.render(**SMALL).pixels)
+
+
+def test_pages_are_those_of_the_program(program, tmp_path):
+    """The same page, but for what the picture's file says of itself."""
+    path = tmp_path / "salt.extxyz"
+    path.write_text("3\nProperties=id:I:1:species:S:1:pos:R:3:q:R:1\n7 Na 0 0 0 0.5\n9 Cl 3 0 0 -1\n11 K 0 3 1 2\n")
+    options = {"size": (48, 36), "spp": 2}
+    command = [program, "render", path, "-o", tmp_path / "theirs.html", "--size", "48x36", "--spp", "2", "--quiet"]
+    subprocess.run(command, check=True, timeout=60)
+    scene = spherule.Scene.load(path)
+    scene.save(tmp_path / "mine.html", **options)
+
+    def parts(name):
+        page = (tmp_path / name).read_text()
+        before, _, rest = page.partition('src="data:image/png;base64,')
+        image, _, after = rest.partition('"')
+        return before, after, [chunk for chunk in chunks(base64.b64decode(image)) if chunk[0] == b"IDAT"]
+
+    assert parts("mine.html") == parts("theirs.html")
+    with pytest.raises(spherule.Error, match="scene.save"):
+        scene.render(**options).save(tmp_path / "other.html")
+    with pytest.raises(spherule.Error, match="`spp`"):
+        scene.save(tmp_path / "scene.toml", spp=2)
+
+
+def chunks(file):
+    """The chunks of a PNG file: kinds and contents."""
+    at = 8
+    while at < len(file):
+        length = int.from_bytes(file[at : at + 4], "big")
+        yield file[at + 4 : at + 8], file[at + 8 : at + 8 + length]
+        at += 12 + length

@@ -136,6 +136,21 @@ def test_traits_move_the_view(viewer):
     assert viewer.picture().pixels.shape == (48, 64, 3)
 
 
+def test_selections_are_set_and_followed(viewer):
+    seen = []
+    viewer.observe(lambda change: seen.append(change["new"]), "selection")
+    viewer.picture()
+    viewer.selection = [14, 11]
+    assert viewer.selection == [14, 11] and "11" in viewer.picked and len(viewer._session.state["marks"]) == 2
+    assert "distance" in viewer._session.state["measures"][0]["text"]
+    viewer.command("pick 'q < 0'")
+    assert viewer.selection == [12, 13] and seen[-1] == [12, 13]
+    with pytest.raises(spherule.Error, match="99"):
+        viewer.selection = [11, 99]
+    viewer.selection = []
+    assert viewer.selection == [] and viewer.picked is None
+
+
 def test_the_picture_is_that_of_the_camera(viewer, salt):
     picture = viewer.picture(spp=4)
     assert picture.spp == (4, 4) and picture.pixels.dtype == np.float32

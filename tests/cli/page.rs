@@ -248,6 +248,49 @@ fn commands_change_the_view_and_bad_ones_are_refused() {
 }
 
 #[test]
+fn selected_particles_are_marked_beside_the_image() {
+    let folder = Folder::new();
+    folder.write("salt.xyz", SALT);
+    let server = Server::start(&folder, &["salt.xyz", "--radii", "1", "--spp", "2"]);
+    let mut page = server.page();
+    page.send("size 64x48");
+    let plain = page.image(|header| is_finished(header) && header["width"] == 64);
+    assert_eq!(plain.header["marks"].as_array().map(Vec::len), Some(0));
+    let ids = |state: &Value| {
+        let picked = state["picked"].as_array().map_or(&[][..], Vec::as_slice);
+        picked.iter().filter_map(|own| own["id"].as_f64()).collect::<Vec<_>>()
+    };
+    for (line, expected) in [
+        ("pick 'q < 0'", &[1.0, 2.0][..]),
+        ("pick 'id 3' 'id 0' 'x == 0'", &[3.0, 0.0, 2.0]),
+        ("pick 'type Na or radius > 3'", &[0.0]),
+        ("pick", &[]),
+        ("pick 'id 3 1'", &[1.0, 3.0]),
+    ] {
+        page.send(line);
+        page.send(&format!("mark {line}"));
+        page.until(|state| ids(state) == expected);
+        assert!(page.errors.is_empty(), "{line}: {:?}", page.errors);
+        assert_eq!(page.state["marks"].as_array().map(Vec::len), Some(expected.len()), "{line}");
+    }
+    // They follow the camera, and the saved image has none.
+    page.send("turn 40 0");
+    let turned = page.image(|header| is_finished(header) && header["marks"][0].is_array());
+    assert_ne!(turned.header["marks"], page.state["marks"], "turned");
+    page.send("turn -40 0");
+    page.until(|state| state["measures"][0]["text"].is_string());
+    page.send("key r");
+    page.send("download png");
+    let saved = page.image(|header| header["file"] == "view.png").files.remove(0);
+    assert!(saved == plain.files[0], "marks are in the file");
+    for line in ["pick 'q <'", "pick 'nothing > 1'"] {
+        page.send(line);
+        assert!(!page.error().is_empty(), "{line}");
+    }
+    page.until(|state| ids(state) == [1.0, 3.0]);
+}
+
+#[test]
 fn one_page_steers_and_others_look() {
     let folder = Folder::new();
     let server = Server::start(&folder, &["--spp", "1"]);

@@ -9,11 +9,8 @@ use crate::cli::write_file::{check_destination, write_file};
 use spherule_render::compose::Descriptions;
 use spherule_render::graphics::Figure;
 use spherule_render::image::{Channel, Image, WriteOptions};
-use spherule_render::layers::{Layer, layers};
-use spherule_render::render::{Options, RenderError};
-use spherule_render::scene::Settings;
+use spherule_render::render::Options;
 use spherule_render::video::Video;
-use std::collections::HashMap;
 
 /// A file of all images, while they are added.
 pub(super) enum Album {
@@ -55,7 +52,11 @@ impl Album {
         let is_turn = setup.views.turntable().is_some();
         let figure = figure.get_or_insert_with(|| Figure::new(&prepared.title, is_turn));
         let file = image.encode(setup.format, channels, options)?;
-        let numbers = numbers(setup, prepared, figure)?;
+        let region = Some(prepared.region);
+        let seen = Options { tracer: setup.tracer, region, ..Options::default() };
+        let descriptions = Descriptions::new(&prepared.labels, prepared.extent);
+        let settings = &prepared.scene.settings;
+        let numbers = descriptions.numbers(&prepared.world, settings, &seen, figure)?;
         figure.add(setup.format, file, (image.width, image.height), &numbers);
         Ok(())
     }
@@ -81,26 +82,4 @@ impl Album {
         }
         Ok(())
     }
-}
-
-/// Returns the number of the text of each pixel: that of the sphere in its middle.
-fn numbers(
-    setup: &RenderSetup,
-    prepared: &Prepared,
-    figure: &mut Figure,
-) -> Result<Vec<u32>, RenderError> {
-    let settings = Settings { spp: 1, ..prepared.scene.settings.clone() };
-    let options =
-        Options { tracer: setup.tracer, region: Some(prepared.region), ..Options::default() };
-    let world = &prepared.world;
-    let found = layers(world, &settings, &options, &[Layer::Id])?;
-    let descriptions = Descriptions::new(&prepared.labels, prepared.extent);
-    let mut numbers: HashMap<u32, u32> = found.pixels.iter().map(|pixel| (pixel.id, 0)).collect();
-    for (row, id) in world.spheres.id.iter().enumerate() {
-        if let Some(number) = numbers.get_mut(id) {
-            let (center, radius) = world.sphere(row);
-            *number = figure.number(&descriptions.text(*id as usize, center, radius));
-        }
-    }
-    Ok(found.pixels.iter().map(|pixel| numbers[&pixel.id]).collect())
 }

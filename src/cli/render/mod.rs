@@ -36,7 +36,7 @@ pub(super) use self::layers::alpha;
 pub(super) use self::metadata::{Subject, push_denoised, push_error};
 #[cfg(test)]
 pub(super) use self::prepare::PlacedScene;
-pub(super) use self::prepare::{extent, frame_number};
+pub(super) use self::prepare::frame_number;
 pub(super) use self::setup::{RenderSetup, VALUES, check_alpha};
 pub(super) use self::summary::warnings;
 use super::failure::Failure;

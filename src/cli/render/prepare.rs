@@ -209,7 +209,7 @@ impl PlacedScene {
     pub(super) fn build(self, setup: &RenderSetup) -> Result<Prepared, Failure> {
         let Self { mut scene, legend, orientation, region, identity, denoise, stored, .. } = self;
         let (mut notes, load, labels) = (self.notes, self.load, self.labels);
-        let extent = extent(&scene);
+        let extent = compose::extent(&scene);
         let image_part = image_part(setup, region, &scene)?;
         let estimate = Estimate::new(&scene, region, setup, denoise.is_some())
             .of_tiles(image_part.tiles.len())
@@ -361,12 +361,6 @@ fn choose(
 fn asked(setup: &RenderSetup) -> Asked {
     let (part, spp) = (setup.part.is_some(), setup.picture.settings.spp().is_some());
     Asked { part, spp, first_frame: None }
-}
-
-/// Half the diagonal of the bounding box of all spheres, ellipsoids and cones.
-pub(in crate::cli) fn extent(scene: &Scene) -> f64 {
-    let extent = scene.bounds().map_or(0.0, |[low, high]| (high - low).length() / 2.0);
-    if extent.is_finite() && extent > 0.0 { extent } else { 1.0 }
 }
 
 /// Returns the number of samples of a region.

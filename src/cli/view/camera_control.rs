@@ -39,6 +39,15 @@ struct Axes {
     forward: DVec3,
 }
 
+/// An ellipse in the image, in units of the image's height from its center, to the right and upward.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Outline {
+    pub(super) center: DVec2,
+    pub(super) radii: DVec2,
+    /// Unit direction of the first radius.
+    pub(super) axis: DVec2,
+}
+
 impl CameraControl {
     /// Creates the control of a camera that is placed by its eye, in a scene of this size.
     pub(super) fn new(camera: Camera, size: f64) -> Self {
@@ -218,6 +227,33 @@ impl CameraControl {
         let default = Lens { aperture: APERTURE * self.distance() / factor, focus: None };
         let lens = self.camera.lens.filter(|lens| lens.aperture > 0.0).unwrap_or(default);
         self.camera.lens = Some(Lens { aperture: lens.aperture * factor, ..lens });
+    }
+
+    /// Returns the outline of a sphere in the image; `None` if the eye is in it, or if it reaches behind the eye.
+    pub(super) fn outline(&self, middle: DVec3, radius: f64) -> Option<Outline> {
+        let (axes, offset) = (self.axes(), middle - self.eye());
+        let across = DVec2::new(offset.dot(axes.right), offset.dot(axes.up));
+        let (center, radii) = match self.camera.projection {
+            Projection::Perspective { .. } => {
+                // A cone about the sphere meets the plane of the image in an ellipse, which is longer away from the center.
+                let ahead = offset.dot(axes.forward);
+                let square = (ahead - radius) * (ahead + radius);
+                if ahead <= radius || square <= 0.0 {
+                    return None;
+                }
+                let scale = self.distance() / self.height();
+                let long = radius * (square + across.length_squared()).sqrt() / square;
+                (
+                    across * (ahead / square) * scale,
+                    DVec2::new(long, radius / square.sqrt()) * scale,
+                )
+            }
+            Projection::Orthographic { .. } => {
+                let scale = self.height().recip();
+                (across * scale, DVec2::splat(radius * scale))
+            }
+        };
+        Some(Outline { center, radii, axis: across.normalize_or(DVec2::X) })
     }
 
     /// Returns origin and unit direction of the ray through a point of the image, in units of its height from

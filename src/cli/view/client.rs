@@ -38,6 +38,8 @@ pub(super) struct Shot {
     pub(super) picture: Arc<Picture>,
     /// The image with its scene, if it is finished.
     pub(super) finished: Option<Saved>,
+    /// The outlines of the selected spheres.
+    marks: Vec<[f32; 6]>,
     /// The file of the finished image, once a page needs it.
     file: OnceLock<Option<Vec<u8>>>,
 }
@@ -49,8 +51,9 @@ impl Shot {
         heard: u64,
         asked: Instant,
         finished: Option<Saved>,
+        marks: Vec<[f32; 6]>,
     ) -> Self {
-        Self { number, heard, asked, picture, finished, file: OnceLock::new() }
+        Self { number, heard, asked, picture, finished, marks, file: OnceLock::new() }
     }
 
     /// The PNG file of a finished image, as `spherule render` writes it.
@@ -290,6 +293,7 @@ fn packed(shot: &Shot, before: Option<&Picture>, pace: Pace) -> Vec<u8> {
         "denoised": picture.before.is_some(),
         "rate": rate,
         "finished": shot.finished.is_some(),
+        "marks": shot.marks,
         "kind": kind,
         "tiles": places,
         // Milliseconds, to measure.

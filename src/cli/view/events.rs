@@ -1,6 +1,7 @@
 //! Events, commands and actions of the viewer.
 
 use glam::{DVec2, DVec3};
+use spherule_render::scene::particles::Selection;
 
 /// Events from a page or a script.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,6 +79,8 @@ pub(super) enum Command {
 pub(super) enum Action {
     /// Pick the sphere at a pixel, for a purpose.
     Pick((u32, u32), Purpose),
+    /// Select the spheres of conditions.
+    Select(Vec<Selection>),
     /// Fit everything into view, from a side or from the current direction.
     Frame(Option<&'static str>),
     /// Load the viewer's content.
@@ -108,6 +111,7 @@ pub(super) struct Picked {
     /// Number of the particle in its file, or row of the sphere in the scene; `None` if the file has another word for it.
     pub(super) id: Option<f64>,
     pub(super) center: DVec3,
+    pub(super) radius: f64,
     /// Hit point of the ray through the pixel.
     pub(super) point: DVec3,
 }

@@ -111,6 +111,11 @@ impl<'a> Headless<'a> {
                 }
             }
             Some(Action::Pick(pixel, purpose)) => self.pick(pixel, purpose)?,
+            Some(Action::Select(selections)) => {
+                if let Some(renderer) = &mut self.renderer {
+                    session::select(&mut self.viewer, renderer.select(&selections)?);
+                }
+            }
         }
         if matches!(step, Step::Move(_)) {
             self.show_motion()?;

@@ -3,7 +3,7 @@
 
 use super::client::{Client, Reply, Shot};
 use super::content::Content;
-use super::events::{Action, Picked, Purpose};
+use super::events::{Action, Purpose};
 use super::frame_rate::FrameRate;
 use super::image::Picture;
 use super::listen::Call;
@@ -13,7 +13,7 @@ use super::options::Options;
 use super::save::{Saved, encode_picture, raw_picture, save_scene};
 use super::script::{self, Step};
 use super::session;
-use super::state::state;
+use super::state::{marks, state};
 use super::viewer::Viewer;
 use super::worker::{Message, Workers};
 use crate::cli::failure::Failure;
@@ -88,6 +88,9 @@ pub(super) struct Host {
     early: Vec<(u64, String)>,
     /// Downloads that wait for an image.
     wanted: Vec<(u64, String)>,
+    /// Number of selections whose spheres are sought, and marks of pages that wait for them.
+    selecting: usize,
+    marks: Vec<(u64, String)>,
     greeting: String,
     /// Warnings that were printed.
     warned: HashSet<String>,
@@ -141,6 +144,8 @@ impl Host {
             steering: None,
             early: Vec::new(),
             wanted: Vec::new(),
+            selecting: 0,
+            marks: Vec::new(),
             greeting,
             warned: HashSet::new(),
             told: String::new(),
@@ -221,8 +226,8 @@ impl Host {
             return Ok(());
         }
         if let Some(mark) = line.strip_prefix("mark ") {
-            // The page knows by it what its commands before that did.
-            self.tell(number, &json!({ "state": self.facts(), "mark": mark }).to_string());
+            self.marks.push((number, mark.to_owned()));
+            self.tell_marks();
             return Ok(());
         }
         if let Some(suffix) = line.strip_prefix("download ") {
@@ -261,6 +266,15 @@ impl Host {
         Ok(())
     }
 
+    /// Tells pages that their commands before a mark are done, and what they did.
+    fn tell_marks(&mut self) {
+        if self.selecting == 0 {
+            for (number, mark) in std::mem::take(&mut self.marks) {
+                self.tell(number, &json!({ "state": self.facts(), "mark": mark }).to_string());
+            }
+        }
+    }
+
     /// Frames everything in an image of another shape, unless the camera was moved.
     fn fit(&mut self) {
         let viewer = &mut self.viewer;
@@ -288,6 +302,10 @@ impl Host {
             Action::Pick(pixel, purpose) => {
                 let at = (self.viewer.control.camera.clone(), self.viewer.settings.clone());
                 self.workers.pick(at, *pixel, *purpose);
+            }
+            Action::Select(selections) => {
+                self.selecting += 1;
+                self.workers.select(selections.clone(), number);
             }
         }
         Ok(())
@@ -334,15 +352,20 @@ impl Host {
                 self.tell_all(&text);
             }
             Message::Picked(Ok(picked), purpose) => {
-                if purpose == Purpose::Name {
-                    let own = |picked: &Picked| json!({ "id": picked.id, "text": picked.text });
-                    self.tell_all(&json!({ "picked": picked.as_ref().map(own) }).to_string());
-                }
                 if let Some(line) = session::picked_by(&mut self.viewer, picked, purpose) {
                     output::print(line);
                 }
             }
             Message::Picked(Err(failure), _) => self.show_error(&failure),
+            Message::Selected(selected, page) => {
+                self.selecting = self.selecting.saturating_sub(1);
+                match selected {
+                    Ok(picked) => session::select(&mut self.viewer, picked),
+                    Err(failure) => {
+                        self.tell(page, &json!({ "error": brief(&failure) }).to_string());
+                    }
+                }
+            }
         }
     }
 
@@ -396,7 +419,8 @@ impl Host {
         }
         let followed = self.versions.front();
         let (heard, asked) = followed.map_or((0, picture.started), |own| (own.heard, own.at));
-        let shot = Shot::new(Arc::clone(picture), self.shots, heard, asked, finished);
+        let marks = marks(&self.viewer);
+        let shot = Shot::new(Arc::clone(picture), self.shots, heard, asked, finished, marks);
         let shot = Arc::new(shot);
         self.clients.iter().for_each(|(_, client)| client.show(Arc::clone(&shot)));
         self.last = Some(shot);
@@ -434,6 +458,7 @@ impl Host {
             }
         }
         self.send_image();
+        self.tell_marks();
         self.tell_state();
         if self.viewer.sampled().is_some() && !self.is_loading() {
             for (number, suffix) in std::mem::take(&mut self.wanted) {
@@ -484,6 +509,7 @@ impl Host {
     fn facts(&self) -> Value {
         let mut facts = state(&self.viewer);
         facts["pages"] = json!(self.clients.len());
+        facts["picture"] = json!(self.shots);
         facts["busy"] = json!(self.is_loading());
         facts["sampled"] = json!(self.viewer.sampled().map_or(0, |picture| picture.samples));
         facts

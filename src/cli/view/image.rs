@@ -39,6 +39,7 @@ pub(super) struct RenderRequest {
 #[derive(Clone, Debug)]
 pub(super) struct Picture {
     pub(super) version: u64,
+    pub(super) camera: Camera,
     /// Samples per pixel; 0 for a preview.
     pub(super) samples: u32,
     pub(super) quality: Quality,

@@ -76,7 +76,7 @@ pub(super) const HELP: [(&str, &str); 40] = [
     ("wheel, ctrl+drag", "zoom; the wheel, toward the pointer"),
     ("alt+drag, shift+wheel", "roll; field of view"),
     ("click", "select the sphere, and tell what it is, also on standard output"),
-    ("shift+click", "select up to four spheres, and measure them"),
+    ("shift+click", "select several spheres; two to four are measured"),
     ("double click", "make this sphere the pivot"),
     ("ctrl+click", "focus the lens on this sphere"),
     ("home a", "fit everything into view"),

@@ -6,7 +6,7 @@ use super::loading::{Progress, Step};
 use super::viewer::Facts;
 use crate::cli::devices::Attached;
 use crate::cli::failure::Failure;
-use crate::cli::render::{RenderSetup, VALUES, check_legend, extent, frame_number};
+use crate::cli::render::{RenderSetup, VALUES, check_legend, frame_number};
 use crate::cli::source::Source;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -307,7 +307,8 @@ impl Loader {
             title: setup.source.title(&scene).into_owned(),
             spheres: count,
             types: labels.kinds.table.iter().map(|kind| kind.name.clone()).collect(),
-            size: extent(&scene),
+            size: compose::extent(&scene),
+            slices: scene.slices[scene.slices.len() - planes..].to_vec(),
             framed,
             lit_from: request.lit_from.clone().unwrap_or_else(|| scene.camera.clone()),
             look: scene.look,

@@ -6,6 +6,7 @@ use super::image::{OverlaidImage, Picture, Quality, RenderRequest};
 use super::load::LoadedScene;
 use super::overlay::OverlayCache;
 use super::tonemap::ToneMapper;
+use super::viewer::SELECTED;
 use crate::cli::failure::Failure;
 use crate::cli::output;
 use crate::cli::render::draw_annotations;
@@ -13,7 +14,7 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use spherule_render::World;
 use spherule_render::bvh::builders::Builder;
-use spherule_render::compose::Descriptions;
+use spherule_render::compose::{Descriptions, Labels};
 use spherule_render::denoise::{Choice, Denoised, Denoiser, Judged};
 use spherule_render::film::Region;
 use spherule_render::image::Image;
@@ -21,8 +22,12 @@ use spherule_render::layers::{Layer, layers};
 use spherule_render::noise::Noise;
 use spherule_render::overlay::Canvas;
 use spherule_render::render::{End, Options, Render, RenderError, ResumableRender, preview};
-use spherule_render::scene::{Annotations, Background, Camera, Denoise, Scene, Settings};
+use spherule_render::scene::particles::{ParticleFrame, Particles, Selection};
+use spherule_render::scene::{
+    Annotations, Background, Camera, Denoise, Rgb, Scene, Settings, Spheres,
+};
 use spherule_render::trace::Tracer;
+use std::collections::HashSet;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
@@ -120,6 +125,7 @@ impl Renderer {
         let sampled = request.quality == Quality::Sampled;
         let mut picture = Picture {
             version: request.version,
+            camera: request.camera.clone(),
             samples: if sampled { request.settings.spp } else { 0 },
             quality: request.quality,
             image,
@@ -250,11 +256,80 @@ impl Renderer {
         let size = DVec2::new(f64::from(settings.width), f64::from(settings.height));
         let offset = (place - size / 2.0) / size.y;
         let ray = CameraControl::new(camera.clone(), extent).ray(offset * DVec2::new(1.0, -1.0));
-        Ok(Some(Picked { text, kind, id, center, point: intersect(ray, center, radius) }))
+        let point = intersect(ray, center, radius);
+        Ok(Some(Picked { text, kind, id, center, radius, point }))
+    }
+
+    /// Returns the spheres of which conditions are true, one condition after another.
+    ///
+    /// # Errors
+    /// A condition names no column there is, or they are true of more spheres than can be selected.
+    pub(super) fn select(&mut self, selections: &[Selection]) -> Result<Vec<Picked>, Failure> {
+        if selections.is_empty() {
+            return Ok(Vec::new());
+        }
+        let spheres = self.spheres();
+        let Labels { kinds, numbers, texts } = std::mem::take(&mut self.stage.labels);
+        let count = numbers.len();
+        let names = numbers.iter().map(|own| &own.name).chain(texts.iter().map(|own| &own.name));
+        let columns = names.cloned().collect();
+        let cell = self.stage.facts.cell;
+        let frame =
+            ParticleFrame { kinds, numbers, texts, columns, cell, ..ParticleFrame::default() };
+        let mut particles = Particles { spheres, frame, ..Particles::default() };
+        let mut rows = Vec::new();
+        let mut fault = None;
+        for selection in selections {
+            match selection.matches(&mut particles) {
+                Ok(chosen) => rows.extend((0..chosen.len()).filter(|&row| chosen[row])),
+                Err(error) => fault = Some(error),
+            }
+        }
+        let Particles { spheres, frame, .. } = particles;
+        let ParticleFrame { kinds, mut numbers, texts, .. } = frame;
+        numbers.truncate(count);
+        self.stage.labels = Labels { kinds, numbers, texts };
+        if let Some(fault) = fault {
+            return Err(Failure::View(fault.message));
+        }
+        let mut seen = HashSet::new();
+        rows.retain(|&row| seen.insert(row));
+        if rows.len() > SELECTED {
+            let count = rows.len();
+            return Err(Failure::View(format!(
+                "{count} particles; at most {SELECTED} can be selected, and `set style 'CONDITION: color=red'` colors all"
+            )));
+        }
+        let labels = &self.stage.labels;
+        let descriptions = Descriptions::new(labels, self.stage.facts.size);
+        let picked = rows.into_iter().map(|row| {
+            let (center, radius) = (spheres.center(row), spheres.radius[row]);
+            let text = descriptions.text(row, center, radius);
+            let kind = labels.kind(row).map(str::to_owned);
+            Picked { text, kind, id: labels.id(row), center, radius, point: center }
+        });
+        Ok(picked.collect())
     }
 }
 
 impl Renderer {
+    /// The spheres of the scene, likewise.
+    fn spheres(&self) -> Spheres {
+        if self.stage.origin.is_none() {
+            let scene = self.stage.scene.read().unwrap_or_else(PoisonError::into_inner);
+            return scene.spheres.clone();
+        }
+        let world = &self.stage.world;
+        let mut places: Vec<usize> = (0..world.spheres.id.len()).collect();
+        places.par_sort_unstable_by_key(|&place| world.spheres.id[place]);
+        let mut spheres = Spheres::default();
+        for place in places {
+            let (center, radius) = world.sphere(place);
+            spheres.push(center, radius, 0, Rgb::ONE);
+        }
+        spheres
+    }
+
     /// Center and radius of a sphere of the scene; in the world's single precision if the scene has only a
     /// sketch.
     fn sphere(&self, row: usize) -> Option<(DVec3, f64)> {

@@ -5,6 +5,7 @@ use super::keys;
 use super::viewer::SCALES;
 use glam::DVec2;
 use spherule_render::image::Format;
+use spherule_render::scene::particles::{Fault, Selection};
 use spherule_render::suggest;
 use std::ffi::OsString;
 use std::fmt::Write;
@@ -17,7 +18,7 @@ const STEPS: u32 = 16;
 const MOST: usize = 1 << 20;
 
 /// Commands of scripts and of the page, with their arguments and what they do.
-pub(super) const COMMANDS: [(&str, &str, &str); 27] = [
+pub(super) const COMMANDS: [(&str, &str, &str); 28] = [
     ("size", "640x360", "set the size of the image"),
     ("scale", "1.5", "set the display's scale factor"),
     ("key", "KEY", "press a key, such as c, F, ctrl+3, home"),
@@ -43,6 +44,11 @@ pub(super) const COMMANDS: [(&str, &str, &str); 27] = [
     ("frame", "N", "go to a frame, from 0"),
     ("hide", "TYPE", "hide a type of particles"),
     ("show", "TYPE", "show a hidden type again"),
+    (
+        "pick",
+        "[CONDITION]...",
+        "select the particles of conditions, as in pick 'q < 0'; without one, none",
+    ),
     ("undo", "", "undo the last change"),
     ("redo", "", "do it again"),
     ("wait", "N", "wait until the image has N samples per pixel"),
@@ -115,6 +121,8 @@ pub(super) enum Step {
     Frame(u64),
     Hide(String),
     Show(String),
+    /// Select the particles of conditions, one condition after another.
+    Pick(Vec<Selection>),
     Undo,
     Redo,
     Hover(DVec2),
@@ -238,6 +246,10 @@ fn step(words: &[&str], count: Option<usize>) -> Result<Step, String> {
         ["frame", index] => Step::Frame(number(index)?),
         ["hide", name] => Step::Hide((*name).to_owned()),
         ["show", name] => Step::Show((*name).to_owned()),
+        ["pick", conditions @ ..] => {
+            let parse = |text: &&str| text.parse().map_err(|fault: Fault| fault.message);
+            Step::Pick(conditions.iter().map(parse).collect::<Result<_, _>>()?)
+        }
         ["undo"] => Step::Undo,
         ["redo"] => Step::Redo,
         ["hover", at] => Step::Hover(place(at)?),

@@ -7,6 +7,7 @@ use crate::cli::options::views::from_side;
 use spherule_render::compose::corners;
 use spherule_render::scene::{Camera, Measure, Pose, Projection, Scene, Settings};
 use spherule_render::world::framing;
+use std::collections::{HashMap, HashSet};
 use std::sync::{PoisonError, RwLock, TryLockError};
 
 /// Default number of samples per pixel.
@@ -93,7 +94,7 @@ fn add(viewer: &mut Viewer, picked: Picked) -> Option<String> {
         return None;
     }
     if viewer.picked.len() == SELECTED {
-        viewer.show_message("four are selected; click without Shift to begin anew");
+        viewer.show_message(format!("{SELECTED} are selected; click without Shift to begin anew"));
         return None;
     }
     let text = picked.text.clone();
@@ -103,6 +104,17 @@ fn add(viewer: &mut Viewer, picked: Picked) -> Option<String> {
         viewer.show_message(measure.clone());
     }
     Some(measure.map_or_else(|| text.clone(), |measure| format!("{text}\n{measure}")))
+}
+
+/// Selects spheres instead of those that are selected.
+pub(super) fn select(viewer: &mut Viewer, picked: Vec<Picked>) {
+    viewer.show_message(match &picked[..] {
+        [] => "no particle is selected".to_owned(),
+        [own] => own.text.clone(),
+        several => format!("{} particles are selected", several.len()),
+    });
+    viewer.named = picked.last().and_then(|own| own.kind.clone());
+    viewer.picked = picked;
 }
 
 /// Returns what two to four selected spheres measure, perhaps between nearest periodic images.
@@ -119,15 +131,26 @@ pub(super) fn measure(viewer: &Viewer, periodic: bool) -> Option<String> {
 
 /// Finds the selected spheres in another scene, as of another frame; those that are not there are no longer selected.
 fn find_picked(viewer: &mut Viewer, stage: &LoadedScene) {
+    if viewer.picked.is_empty() {
+        return;
+    }
     if stage.origin.is_some() {
         // There is only a sketch of the spheres.
         return viewer.picked.clear();
     }
     let scene = stage.scene.read().unwrap_or_else(PoisonError::into_inner);
-    let find = |id: f64| (0..scene.spheres.len()).find(|&row| stage.labels.id(row) == Some(id));
+    let wanted: HashSet<u64> =
+        viewer.picked.iter().filter_map(|own| own.id).map(f64::to_bits).collect();
+    let rows =
+        (0..scene.spheres.len()).filter_map(|row| Some((stage.labels.id(row)?.to_bits(), row)));
+    // Of copies, the first.
+    let rows: HashMap<u64, usize> = rows.filter(|(id, _)| wanted.contains(id)).rev().collect();
     viewer.picked.retain_mut(|picked| {
-        let row = picked.id.and_then(find);
-        row.inspect(|&row| picked.center = scene.spheres.center(row)).is_some()
+        let row = picked.id.and_then(|id| rows.get(&id.to_bits()));
+        row.inspect(|&&row| {
+            (picked.center, picked.radius) = (scene.spheres.center(row), scene.spheres.radius[row]);
+        })
+        .is_some()
     });
 }
 

@@ -1,5 +1,7 @@
 //! Facts for pages: the state of the viewer, and once the commands and options that there are.
 
+use super::camera_control::{CameraControl, Outline};
+use super::events::Picked;
 use super::keys;
 use super::options::{Options, command, topics};
 use super::python;
@@ -19,6 +21,9 @@ use spherule_render::settings::{INTEGRATORS, SAMPLERS};
 
 /// Number of colors of a color bar.
 const COLORS: u32 = 64;
+
+/// Number of selected spheres that are described.
+const DESCRIBED: usize = 12;
 
 /// Maximum number of ticks of a color bar.
 const TICKS: usize = 6;
@@ -111,6 +116,7 @@ pub(super) fn state(viewer: &Viewer) -> Value {
         "python": python,
         "named": viewer.named,
         "picked": picked(viewer),
+        "marks": marks(viewer),
         "measures": measures(viewer),
         "message": viewer.message,
         "loading": viewer.loading.as_ref().map(|loading| json!([loading.text(), loading.done])),
@@ -120,10 +126,25 @@ pub(super) fn state(viewer: &Viewer) -> Value {
     })
 }
 
-/// Describes the selected spheres.
+/// Describes the selected spheres, the first ones and the last one in words.
 fn picked(viewer: &Viewer) -> Vec<Value> {
-    let picked = viewer.picked.iter();
-    picked.map(|picked| json!({ "id": picked.id, "text": picked.text })).collect()
+    let picked = viewer.picked.iter().enumerate();
+    let is_last = |at: usize| at + 1 == viewer.picked.len();
+    let text = |at: usize, own: &Picked| (at < DESCRIBED || is_last(at)).then(|| own.text.clone());
+    picked.map(|(at, own)| json!({ "id": own.id, "text": text(at, own) })).collect()
+}
+
+/// Returns the outlines of the selected spheres in the image that is shown: center, radii and direction of the first one.
+pub(super) fn marks(viewer: &Viewer) -> Vec<[f32; 6]> {
+    let Some(picture) = viewer.shown.as_ref().filter(|_| !viewer.picked.is_empty()) else {
+        return Vec::new();
+    };
+    let control = CameraControl::new(picture.camera.clone(), viewer.facts.size);
+    let outlines = viewer.picked.iter().filter_map(|own| control.outline(own.center, own.radius));
+    let numbers = |Outline { center, radii, axis }: Outline| {
+        [center.x, center.y, radii.x, radii.y, axis.x, axis.y].map(|number| number as f32)
+    };
+    outlines.map(numbers).collect()
 }
 
 /// Returns what the selected spheres measure, each with the value of the option that draws it: directly, and between nearest

@@ -78,6 +78,7 @@ impl Viewer {
             Step::Frame(frame) => Some(self.go_to_frame(*frame)),
             Step::Hide(name) => self.hide_type(name),
             Step::Show(name) => Some(self.show_type(name)),
+            Step::Pick(selections) => Some(Action::Select(selections.clone())),
             Step::Undo => self.undo(),
             Step::Redo => self.redo(),
             Step::Hover(place) => Some(Action::Pick(self.pixel(*place), Purpose::Hover)),

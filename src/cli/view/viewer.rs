@@ -19,8 +19,8 @@ use std::sync::Arc;
 /// Minimum and maximum side of the image in pixels.
 const SIDES: (u32, u32) = (16, 16_384);
 
-/// Maximum number of selected spheres: those of a dihedral.
-pub(super) const SELECTED: usize = 4;
+/// Maximum number of selected spheres: all of them are marked in each image.
+pub(super) const SELECTED: usize = 1000;
 
 /// Range of display scales.
 pub(super) const SCALES: std::ops::RangeInclusive<f64> = 0.25..=8.0;

@@ -12,6 +12,7 @@ use super::renderer::Renderer;
 use crate::cli::failure::Failure;
 use crate::cli::render::RenderSetup;
 use rayon::ThreadPool;
+use spherule_render::scene::particles::Selection;
 use spherule_render::scene::{Camera, Settings};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -29,6 +30,8 @@ pub(super) enum Message {
     /// A request is done; `None` if it was cancelled, or another one is done in its place.
     Picture(Result<Option<Box<Picture>>, Failure>),
     Picked(Result<Option<Picked>, Failure>, Purpose),
+    /// The spheres of conditions, for the page that asked.
+    Selected(Result<Vec<Picked>, Failure>, u64),
 }
 
 /// A request to load.
@@ -45,6 +48,7 @@ enum Task {
     Drop(Sender<()>),
     Render(RenderRequest, Arc<AtomicBool>),
     Pick((Camera, Settings), (u32, u32), Purpose),
+    Select(Vec<Selection>, u64),
 }
 
 /// Handles of the threads.
@@ -128,6 +132,12 @@ impl Workers {
         let _ = self.tasks.send(Task::Pick(at, pixel, purpose));
     }
 
+    /// Requests the spheres of conditions, for a page, before rendering continues.
+    pub(super) fn select(&mut self, selections: Vec<Selection>, page: u64) {
+        self.cancel();
+        let _ = self.tasks.send(Task::Select(selections, page));
+    }
+
     /// Cancels the current render.
     pub(super) fn cancel(&mut self) {
         if let Some((_, flag)) = self.current.take() {
@@ -204,6 +214,13 @@ fn render(
                 (Task::Pick((camera, settings), pixel, purpose), Some(renderer)) => {
                     let picked = pool.install(|| renderer.pick(&camera, &settings, pixel));
                     if !notify(Message::Picked(picked, purpose)) {
+                        return;
+                    }
+                }
+                (Task::Select(selections, page), renderer) => {
+                    let select = |renderer: &mut Renderer| renderer.select(&selections);
+                    let selected = renderer.as_mut().map(|own| pool.install(|| select(own)));
+                    if !notify(Message::Selected(selected.unwrap_or(Ok(Vec::new())), page)) {
                         return;
                     }
                 }

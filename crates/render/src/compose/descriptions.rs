@@ -1,8 +1,20 @@
 //! Descriptions of spheres: what a pointer that rests on one is told.
 
-use super::{Labels, digits};
+use super::{Labels, ROWS, digits};
+use crate::graphics::Figure;
+use crate::layers::{Layer, layers};
+use crate::render::{Options, RenderError};
+use crate::scene::{Scene, Settings};
+use crate::world::World;
 use glam::DVec3;
+use std::collections::HashMap;
 use std::fmt::Write;
+
+/// Returns half the diagonal of the bounding box of all spheres, ellipsoids and cones of a scene; 1 if it has none.
+pub fn extent(scene: &Scene) -> f64 {
+    let extent = scene.bounds().map_or(0.0, |[low, high]| (high - low).length() / 2.0);
+    if extent.is_finite() && extent > 0.0 { extent } else { 1.0 }
+}
 
 /// Describes the spheres of a scene.
 #[derive(Clone, Debug)]
@@ -15,10 +27,34 @@ pub struct Descriptions<'l> {
 }
 
 impl<'l> Descriptions<'l> {
-    /// Prepares to describe the spheres that have these labels, in a scene of this size: half the diagonal of its bounding box.
+    /// Prepares to describe the spheres that have these labels, in a scene of this size, as of [`extent`].
     pub fn new(labels: &'l Labels, extent: f64) -> Self {
         let ranges = labels.numbers.iter().map(|column| digits::range(&column.values)).collect();
         Self { labels, ranges, extent }
+    }
+
+    /// Returns the number of the text of each pixel in a figure: that of the sphere in its middle.
+    ///
+    /// # Errors
+    /// The camera sees nothing.
+    pub fn numbers(
+        &self,
+        world: &World,
+        settings: &Settings,
+        options: &Options,
+        figure: &mut Figure,
+    ) -> Result<Vec<u32>, RenderError> {
+        let settings = Settings { spp: 1, ..settings.clone() };
+        let found = layers(world, &settings, options, &[Layer::Id])?;
+        let mut numbers: HashMap<u32, u32> =
+            found.pixels.iter().map(|pixel| (pixel.id, 0)).collect();
+        for (row, id) in world.spheres.id.iter().enumerate() {
+            if let Some(number) = numbers.get_mut(id) {
+                let (center, radius) = world.sphere(row);
+                *number = figure.number(&self.text(*id as usize, center, radius));
+            }
+        }
+        Ok(found.pixels.iter().map(|pixel| numbers[&pixel.id]).collect())
     }
 
     /// Returns number, type, position, radius and columns of a sphere by its row.
@@ -30,7 +66,8 @@ impl<'l> Descriptions<'l> {
         let number = labels.id(row).unwrap_or(row as f64);
         let mut text = format!("sphere {number}: {named}at {a} {b} {c}, radius {length}");
         for (column, range) in labels.numbers.iter().zip(ranges) {
-            if let Some(value) = column.values.get(row).filter(|_| column.name != "id") {
+            let told = !["id", ROWS].contains(&column.name.as_str());
+            if let Some(value) = column.values.get(row).filter(|_| told) {
                 let value = digits::value(*value, *range);
                 // Writing to a string does not fail.
                 let _ = write!(text, ", {} = {value}", column.name);

@@ -25,7 +25,7 @@ pub use self::camera::{
     CameraRequest, Focus, LensRequest, LookAt, choose, corners, frame, leave_room, light,
     light_ahead, place, vertical, zoom,
 };
-pub use self::descriptions::Descriptions;
+pub use self::descriptions::{Descriptions, extent};
 pub use self::marks::MeasureRequest;
 pub use self::sections::{Sections, change};
 pub use self::survey::Survey;
@@ -157,7 +157,11 @@ impl Labels {
             let texts = self.texts.iter().find(|own| own.name.eq_ignore_ascii_case(name))?;
             Some((row < texts.codes.len()).then(|| texts.text(row).trim().parse().ok()).flatten())
         };
-        names.find_map(id).unwrap_or(Some(row as f64))
+        let own = names.find_map(id);
+        own.or_else(|| {
+            Some(self.numbers.iter().find(|own| own.name == ROWS)?.values.get(row).copied())
+        })
+        .unwrap_or(Some(row as f64))
     }
 }
 

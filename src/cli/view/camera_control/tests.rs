@@ -1,4 +1,5 @@
 use super::*;
+use spherule_render::elementary::{cos, sin};
 
 fn control() -> CameraControl {
     let pose = Pose::LookAt { eye: DVec3::new(3.0, 2.0, 7.0), target: DVec3::new(1.0, 0.0, 0.5) };
@@ -77,6 +78,25 @@ fn toggling_the_projection_twice_changes_nothing() {
     control.toggle_projection();
     assert!(near(place(&control, DVec3::new(1.0, 0.0, 0.5)), before));
     assert!((control.height() - height).abs() < 1e-9);
+}
+
+#[test]
+fn rays_at_an_outline_touch_the_sphere() {
+    let (middle, radius) = (DVec3::new(-0.5, 1.0, 1.5), 1.2);
+    let mut control = control();
+    for _ in 0..2 {
+        let Outline { center, radii, axis } = control.outline(middle, radius).unwrap();
+        assert!(radii.x > radii.y - 1e-12 && radii.y > 0.1, "{radii}");
+        for step in 0..16 {
+            let angle = f64::from(step) * 0.4;
+            let place = axis.rotate(DVec2::new(cos(angle), sin(angle)) * radii);
+            let (origin, direction) = control.ray(center + place);
+            let distance = (middle - origin).reject_from(direction).length();
+            assert!((distance - radius).abs() < 1e-9, "{step} {distance}");
+        }
+        control.toggle_projection();
+    }
+    assert_eq!(control.outline(control.eye(), 0.1), None);
 }
 
 #[test]

@@ -52,6 +52,8 @@ function mount(root, connect) {
     if (message.state) {
       if (restored && !message.state.busy && !message.state.loading && message.state.title) restore(message.state);
       state = message.state;
+      // Of an image that is still to come, with it.
+      if (state.picture === shown?.picture) drawMarks(state.marks);
       tell();
     }
     if ("hover" in message) showTip(message.hover);
@@ -99,8 +101,9 @@ function mount(root, connect) {
       bitmap.close();
     }
     send(`shown ${header.picture}`);
-    measure(header, { decode: decoded - arrived, draw: performance.now() - decoded });
     shown = header;
+    drawMarks(state?.picture === header.picture ? state.marks : header.marks);
+    measure(header, { decode: decoded - arrived, draw: performance.now() - decoded });
     canvas.dataset.picture = header.picture;
     canvas.dataset.samples = header.samples;
     canvas.dataset.finished = header.finished;
@@ -258,6 +261,22 @@ function mount(root, connect) {
     const corners = [[a[0] - dx, a[1] - dy], [a[0] + dx, a[1] + dy], [a[0] + dx - dy, a[1] + dy + dx], [a[0] - dx - dy, a[1] - dy + dx]];
     svg.append(shape("polygon", { points: corners.map((corner) => corner.join(",")).join(" ") }));
     svg.append(shape("line", { x1: a[0], y1: a[1], x2: b[0], y2: b[1] }));
+  }
+
+  /** Draws rings around the selected spheres, over the image: the saved one has none. */
+  function drawMarks(marks) {
+    const svg = at("marks");
+    svg.replaceChildren();
+    if (!marks.length || !shown) return;
+    const aspect = canvas.width / canvas.height, pixel = 1 / stage.clientHeight;
+    svg.setAttribute("viewBox", `${-aspect / 2} -0.5 ${aspect} 1`);
+    const rings = marks.map(([x, y, long, short, right, up]) => {
+      const radii = [long, short].map((radius) => Math.max(radius + 2 * pixel, 5 * pixel));
+      const [dx, dy] = [right * radii[0], -up * radii[0]];
+      const arc = `A${radii} ${Math.atan2(-up, right) * 180 / Math.PI} 0 1`;
+      return `M${x - dx} ${-y - dy}${arc} ${x + dx} ${-y + dy}${arc} ${x - dx} ${-y - dy}`;
+    });
+    svg.append(...["halo", "ring"].map((name) => shape("path", { class: name, d: rings.join("") })));
   }
 
   function shape(name, attributes) {
@@ -433,7 +452,7 @@ function mount(root, connect) {
       for (const row of rest) row.hidden = !row.textContent.includes(find.value.toLowerCase()) && !row.title.toLowerCase().includes(find.value.toLowerCase());
     };
     at("sections").replaceChildren(
-      ...sections, camera(), section("Selected", true, [selected()]), section("Types", false, [types()]), save(), section("All other options", false, [find, ...rest]));
+      ...sections, camera(), section("Selected", true, selected()), section("Types", false, [types()]), save(), section("All other options", false, [find, ...rest]));
     const table = at("keys").querySelector("table");
     table.replaceChildren(...hello.keys.map(([keys, what]) => make("tr", {}, make("td", {}, keys), make("td", {}, what))));
   }
@@ -453,20 +472,31 @@ function mount(root, connect) {
     const id = `option-${option.name}`;
     const row = make("div", { className: "row", title: option.help ?? "" });
     const label = make("label", { htmlFor: id }, option.name);
+    const set = (...values) => {
+      ask(row, values.length ? `set ${option.name} ${values.map((value) => (value == null ? "" : quoted(value))).join(" ")}`.trimEnd() : `unset ${option.name}`);
+    };
+    const values = () => state?.options[option.name] ?? [];
+    row.append(label, option.many ? list(option, id, values, set) : single(option, id, values, set));
+    return refusing(row);
+  }
+
+  /** A row that shows why what it asked for is refused. */
+  function refusing(row) {
     const why = make("div", { className: "why", hidden: true });
+    row.append(why);
     row.refuse = (text) => {
       row.classList.toggle("bad", Boolean(text));
       why.hidden = !text;
       why.textContent = text ?? "";
     };
-    const set = (...values) => {
-      asked = row;
-      row.refuse();
-      send(values.length ? `set ${option.name} ${values.map((value) => (value == null ? "" : quoted(value))).join(" ")}`.trimEnd() : `unset ${option.name}`);
-    };
-    const values = () => state?.options[option.name] ?? [];
-    row.append(label, option.many ? list(option, id, values, set) : single(option, id, values, set), why);
     return row;
+  }
+
+  /** Sends a command of a row. */
+  function ask(row, line) {
+    asked = row;
+    row.refuse();
+    send(line);
   }
 
   /** A control of one value. */
@@ -557,6 +587,13 @@ function mount(root, connect) {
   /** The selected spheres, and what they measure. */
   function selected() {
     const rows = make("div", { className: "selected" });
+    const field = make("input", { id: "pick", placeholder: "CONDITION", autocomplete: "off", spellcheck: false });
+    const row = make("div", { className: "row", title: "Select the particles of a condition, as --select has it" }, make("label", { htmlFor: "pick" }, "pick"), field);
+    suggest(field, () => state.columns);
+    refusing(row);
+    field.onchange = () => {
+      ask(row, field.value.trim() ? `pick ${quoted(field.value.trim())}` : "pick");
+    };
     let before = null;
     refreshers.push(() => {
       const now = JSON.stringify([state.picked, state.measures, state.options.measure]);
@@ -570,10 +607,13 @@ function mount(root, connect) {
         keep.onclick = () => send(`set measure ${[...kept, option].map(quoted).join(" ")}`);
         return make("div", {}, value, keep);
       };
-      const none = state.picked.length ? [] : [make("div", { className: "hint" }, "Click a sphere; with Shift, up to four: their distance, angle or dihedral.")];
-      rows.replaceChildren(...none, ...state.picked.map(({ text }) => make("div", {}, text)), ...state.measures.map(measure));
+      const none = state.picked.length ? [] : [make("div", { className: "hint" }, "Click a sphere; with Shift, several: two to four have a distance, angle or dihedral.")];
+      const described = state.picked.filter(({ text }) => text != null);
+      const more = state.picked.length - described.length;
+      const rest = more ? [make("div", { className: "hint" }, `and ${number(more)} more`)] : [];
+      rows.replaceChildren(...none, ...described.map(({ text }) => make("div", {}, text)), ...rest, ...state.measures.map(measure));
     });
-    return rows;
+    return [row, rows];
   }
 
   function types() {

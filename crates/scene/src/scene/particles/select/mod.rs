@@ -144,6 +144,16 @@ impl Selection {
         bind::rows(&self.tree, &particles).map_err(|(_, message)| message)
     }
 
+    /// Returns for each particle whether the condition is true of it; columns that are computed are added to them.
+    ///
+    /// # Errors
+    ///
+    /// The condition names no column there is, or compares what cannot be compared.
+    pub fn matches(&self, particles: &mut Particles) -> Result<Vec<bool>, FileError> {
+        add_numbers(particles, &self.columns());
+        self.chosen(particles)
+    }
+
     /// All words that may be columns.
     pub fn columns(&self) -> Vec<String> {
         let mut names = Vec::new();
