@@ -308,7 +308,6 @@ impl Loader {
             spheres: count,
             types: labels.kinds.table.iter().map(|kind| kind.name.clone()).collect(),
             size: compose::extent(&scene),
-            slices: scene.slices[scene.slices.len() - planes..].to_vec(),
             framed,
             lit_from: request.lit_from.clone().unwrap_or_else(|| scene.camera.clone()),
             look: scene.look,
