@@ -4,8 +4,8 @@
 //! comes first in the user's scene is hit. So traversals differ in time, never in their answers.
 
 use super::enclosing::power;
+use super::query::Query;
 use super::resolver::{DONE, rounded_out};
-use super::traversal::Query;
 use crate::exact::{self, Distance};
 use crate::intersect::{self, CLEAR, Pairs, Root};
 use crate::ray::{ExactRay, MISS};

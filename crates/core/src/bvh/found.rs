@@ -6,8 +6,9 @@
 
 use super::Tree;
 use super::nearest::NearestHit;
+use super::query::Query;
 use super::resolver::HitResolver;
-use super::traversal::{Query, trace_unresolved};
+use super::traversal::trace_unresolved;
 use crate::conservative::{Chord, ConservativeRay};
 use crate::lanes::bits;
 use crate::ray::{CHUNK, Hits, MISS, Rays};

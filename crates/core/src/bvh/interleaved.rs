@@ -7,8 +7,8 @@
 //! be mispredicted: so the processor overlaps them.
 
 use super::child_order::{farthest_first, in_order};
+use super::query::Query;
 use super::resolver::{DONE, HitResolver};
-use super::traversal::Query;
 use super::{Bvh, Child, DEPTH, Node, WIDTH};
 use crate::lanes::{
     F32x8, Lanes, MAX_LANES, Mask, U32x16, least_lane, set_bits, shuffle, shuffle_numbers,

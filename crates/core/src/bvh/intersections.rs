@@ -3,8 +3,8 @@
 use super::Tree;
 use super::decision::Decision;
 use super::one_ray::{STACK, Search, walk};
+use super::query::Closest;
 use super::single::chords;
-use super::traversal::Closest;
 use crate::conservative::ConservativeRay;
 use crate::intersect::Root;
 use crate::lanes::{F32x8, Mask, set_bits};

@@ -16,6 +16,7 @@ mod nearest;
 mod one_ray;
 mod packet;
 mod plain_ray;
+mod query;
 mod ray_setup;
 mod resolver;
 mod rows;
@@ -28,11 +29,9 @@ pub(crate) use intersections::{Intersection, for_each_intersection};
 pub use one_ray::{OneHit, trace_far, trace_one};
 pub(crate) use one_ray::{SMALL_STACK, STACK, Search, walk};
 pub use plain_ray::{PlainAnswer, PlainHit, PlainRay};
+pub use query::{Any, Closest, ClosestRounded, Query, Unverified, Visits};
 pub use rows::NodeRow;
-pub use traversal::{
-    Any, Closest, ClosestRounded, PacketWidth, Query, Tracer, Traversal, Unverified, Visits,
-    count_visits, trace,
-};
+pub use traversal::{PacketWidth, Tracer, Traversal, count_visits, trace};
 
 use crate::elementary;
 use crate::lanes::U32x16;

@@ -10,8 +10,8 @@
 //! beyond that, or not at all, the ray is traced again as well: so that distance is no bound, and takes
 //! two operations.
 
+use super::query::Query;
 use super::resolver::DONE;
-use super::traversal::Query;
 use crate::conservative::{Chord, ConservativeRay, Margin};
 use crate::lanes::{Lanes, Mask, bits};
 use crate::ray::MISS;

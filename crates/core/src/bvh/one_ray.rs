@@ -17,9 +17,9 @@
 
 use super::child_order::farthest_first;
 use super::decision::{Decision, Nearest};
+use super::query::Query;
 use super::resolver::rounded_out;
 use super::single::{certainly_hits, chords};
-use super::traversal::Query;
 use super::{Bvh, Child, DEPTH, Tree, WIDTH};
 use crate::conservative::ConservativeRay;
 use crate::lanes::{F32x8, Lanes, Mask, least_lane, set_bits, shuffle, shuffle_numbers};

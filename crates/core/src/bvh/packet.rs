@@ -8,8 +8,8 @@
 
 use super::interleaved::RayGroup;
 use super::nearest::{Candidate, NearestHit, RunnerUp, SphereLanes};
+use super::query::Query;
 use super::resolver::{DONE, HitResolver};
-use super::traversal::Query;
 use crate::conservative::{Chord, ConservativeRay, Margin};
 use crate::lanes::{F32x8, Lanes, bits, bits_of, greatest_of, set_bits};
 use crate::ray::{Columns3, MISS, Rays};

@@ -6,9 +6,9 @@
 use super::Tree;
 use super::decision::Decision;
 use super::one_ray::{SMALL_STACK, Search, walk};
+use super::query::{Any, ClosestRounded};
 use super::resolver::rounded_out;
 use super::single::{DeferredHit, chords};
-use super::traversal::{Any, ClosestRounded};
 use crate::conservative::ConservativeRay;
 use crate::intersect::{self, CLEAR, Pairs};
 use crate::lanes::{F32x4, F32x8, Lanes, Mask, set_bits};

@@ -3,8 +3,8 @@
 //! Rays start about in their order. So the first of sixteen computes the slabs, the conservative rays
 //! and the bounds of all of them, and the others look theirs up.
 
+use super::query::Query;
 use super::resolver::{DONE, HitResolver};
-use super::traversal::Query;
 use crate::conservative::{ConservativeRay, ConservativeRow};
 use crate::lanes::{F32x16, Lanes, MAX_LANES};
 use crate::slabs::{RaySlabs, Slabs};

@@ -9,8 +9,8 @@
 
 use super::decision::{Decision, Nearest};
 use super::nearest::{NearestHit, RunnerUp};
+use super::query::{Query, Visits};
 use super::ray_setup::RaySetup;
-use super::traversal::{Query, Visits};
 use crate::conservative::{Chord, ConservativeRay};
 use crate::exact;
 use crate::intersect::{self, CLEAR, Pair, Pairs};

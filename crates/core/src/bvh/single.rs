@@ -7,9 +7,9 @@
 
 use super::interleaved::RayGroup;
 use super::nearest::{Candidate, NearestHit, RunnerUp, SphereLanes, likely_distance};
+use super::query::Query;
 use super::ray_setup::RayStart;
 use super::resolver::{DONE, HitResolver};
-use super::traversal::Query;
 use crate::conservative::{Chord, ConservativeRay};
 use crate::lanes::{F32x8, Lanes, Mask, bits, set_bits};
 use crate::ray::MISS;

@@ -8,13 +8,13 @@
 
 use super::interleaved;
 use super::packet::{Packet, PacketStart};
+use super::query::{Any, Closest, Counted, Query, Visits};
 use super::ray_setup::RayStart;
 use super::resolver::HitResolver;
 use super::single::{DeferredRay, SingleRay};
 use super::{Bvh, Tree};
 use crate::lanes::{F32x4, F32x8, F32x16, Lanes, MAX_LANES, Mask, Packing, U32x16, set_bits};
 use crate::ray::{CHUNK, Hits, Rays};
-use crate::spheres::LEAF;
 use std::marker::PhantomData;
 use std::ops::Range;
 
@@ -45,77 +45,6 @@ const MAX_DIRECTION_OFFSET: f32 = 0.5;
 
 /// A packet has at least one lane in this many active.
 const MIN_ACTIVE: usize = 2;
-
-/// The answer that a traversal looks for.
-pub trait Query {
-    /// True if any hit ends a ray's traversal.
-    const ANY: bool;
-    /// True if hits are decided exactly.
-    const EXACT: bool = true;
-    /// True if distances are rounded to the nearest doubles.
-    const ROUNDED: bool = false;
-    /// True if visits are counted.
-    const COUNTED: bool = false;
-}
-
-/// The first hit of a ray: fills `t` and `sphere` of [`Hits`].
-pub struct Closest;
-
-impl Query for Closest {
-    const ANY: bool = false;
-}
-
-/// As [`Closest`], and each `t` is the double that is nearest to the distance. The largest coordinate of each
-/// direction is in `1..2`, origins are exact, and no ray has a hit beforehand.
-pub struct ClosestRounded;
-
-impl Query for ClosestRounded {
-    const ANY: bool = false;
-    const ROUNDED: bool = true;
-}
-
-/// Any hit of a ray nearer than `t`: fills `sphere` of [`Hits`] with some sphere that it hits.
-pub struct Any;
-
-impl Query for Any {
-    const ANY: bool = true;
-}
-
-/// A query that accepts the hits and distances of the conservative test, in single precision. For
-/// measurements only: the time that it saves is the price of exactness.
-pub struct Unverified<Q>(PhantomData<Q>);
-
-impl<Q: Query> Query for Unverified<Q> {
-    const ANY: bool = Q::ANY;
-    const EXACT: bool = false;
-}
-
-/// A query that counts visits. For measurements only.
-struct Counted<Q>(PhantomData<Q>);
-
-impl<Q: Query> Query for Counted<Q> {
-    const ANY: bool = Q::ANY;
-    const EXACT: bool = Q::EXACT;
-    const COUNTED: bool = true;
-}
-
-/// Visits of rays to the tree. Those of a packet count once.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Visits {
-    /// Nodes, the root included.
-    pub nodes: u64,
-    /// Leaves.
-    pub leaves: u64,
-    /// Spheres that the test of a leaf did not rule out.
-    pub candidates: u64,
-}
-
-impl Visits {
-    /// Spheres that were tested, in whole leaves.
-    pub fn spheres(&self) -> u64 {
-        self.leaves * LEAF as u64
-    }
-}
 
 /// The way in which rays are traced. Hits do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,8 @@
 //! Batches of rays: those that single precision holds are traced in packets, the others one by one.
 
+use super::answers::{Answers, FoundHit};
 use super::chunk::{ChunkRays, Rows};
-use super::columns::{Hits, RayTable, Surface, Tally};
+use super::columns::{RayTable, Tally};
 use super::load::PACKET;
 use super::reorder::{SORTED_RAYS, SortedRays};
 use super::surface::PendingSurfaces;
@@ -13,64 +14,6 @@ use crate::ray::{self, MISS, Rays};
 
 /// Rays that are traced together: they stay in the second-level cache.
 pub(super) const CHUNK: usize = 2048;
-
-/// A hit.
-pub(super) struct FoundHit {
-    /// The sphere's row in the tree.
-    pub(super) sphere: usize,
-    /// The sphere's row in the user's columns; [`NOTHING`] if nobody asks which.
-    pub(super) id: u32,
-    /// In units of the user's direction; unspecified if any hit was looked for.
-    pub(super) t: f64,
-}
-
-/// Columns of the caller's for the answers of a query.
-pub(super) trait Answers {
-    /// The distances at which searches end.
-    fn bounds(&self) -> &[f64];
-    /// Writes the answer of ray `i`.
-    fn set(&mut self, i: usize, found: &FoundHit);
-    /// The column of surfaces, if they are asked for.
-    fn surfaces(&mut self) -> Option<&mut [Surface]>;
-}
-
-impl Answers for Hits<'_> {
-    fn bounds(&self) -> &[f64] {
-        self.t
-    }
-
-    #[inline(always)]
-    fn set(&mut self, i: usize, found: &FoundHit) {
-        (self.t[i], self.sphere[i]) = (found.t, found.id);
-    }
-
-    #[inline(always)]
-    fn surfaces(&mut self) -> Option<&mut [Surface]> {
-        self.surface.as_deref_mut()
-    }
-}
-
-/// Columns of a query for any hit.
-pub(super) struct Occlusion<'a> {
-    pub(super) t: &'a [f64],
-    pub(super) occluded: &'a mut [bool],
-}
-
-impl Answers for Occlusion<'_> {
-    fn bounds(&self) -> &[f64] {
-        self.t
-    }
-
-    #[inline(always)]
-    fn set(&mut self, i: usize, _: &FoundHit) {
-        self.occluded[i] = true;
-    }
-
-    #[inline(always)]
-    fn surfaces(&mut self) -> Option<&mut [Surface]> {
-        None
-    }
-}
 
 /// The rays of a chunk in the tree's units, and what they hit; chunks share the memory.
 struct TracedRays {

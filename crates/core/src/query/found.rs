@@ -1,6 +1,7 @@
 //! Queries whose traversal is done elsewhere, on another processor.
 
-use super::batch::{CHUNK, Occlusion};
+use super::answers::Occlusion;
+use super::batch::CHUNK;
 use super::chunk::Rows;
 use super::columns::{RayTable, same_length};
 use super::{Hits, NOTHING, QueryError, RayColumns, SphereTree, Tally};

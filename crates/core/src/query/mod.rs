@@ -5,9 +5,11 @@
 //! rounding would. To keep the conservative test within its range it multiplies coordinates
 //! by a power of two, which is exact, and nothing else is done to them.
 
+mod answers;
 mod batch;
 mod chunk;
 mod columns;
+mod error;
 mod found;
 mod load;
 mod plain_ray;
@@ -17,6 +19,7 @@ mod strays;
 mod surface;
 
 pub use columns::{Hit, Hits, NOTHING, RayColumns, RayRows, Surface, Tally};
+pub use error::QueryError;
 
 use crate::bvh::Bvh;
 use crate::bvh::builders::{Builder, Item, Precise, build_items, collected};
@@ -25,7 +28,7 @@ use crate::elementary;
 use crate::lanes::F32x4;
 use crate::spheres::Spheres;
 use crate::vec3::Vec3 as Coordinates;
-use batch::Occlusion;
+use answers::Occlusion;
 use columns::{RayTable, same_length};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -52,22 +55,6 @@ pub struct SphereTree {
     /// A power of two, which makes their largest coordinate about 1, and its reciprocal.
     stray_scale: [f64; 2],
     invalid: usize,
-}
-
-/// The reason why a tree cannot be built, or columns cannot be traced.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum QueryError {
-    /// Columns differ in length.
-    #[error("the columns differ in length: one has {expected} rows and another {found}")]
-    Lengths {
-        /// Length of the first column.
-        expected: usize,
-        /// Length of another column.
-        found: usize,
-    },
-    /// Rows are numbers of 32 bits.
-    #[error("{0} spheres are too many: at most {max} fit", max = Spheres::MAX)]
-    TooMany(usize),
 }
 
 impl SphereTree {

@@ -1,7 +1,7 @@
 //! Rays one by one: those of which there is only one, and those whose coordinates or distances single precision
 //! cannot hold.
 
-use super::batch::FoundHit;
+use super::answers::FoundHit;
 use super::{SphereTree, Tally};
 use crate::bvh::{Query, trace_far, trace_one};
 use crate::elementary;

@@ -1,6 +1,6 @@
 //! Points and normals of hits.
 
-use super::batch::FoundHit;
+use super::answers::FoundHit;
 use super::columns::RayTable;
 use super::scaled_ray::ScaledRay;
 use super::{SphereTree, Surface};

@@ -1,29 +1,14 @@
-//! File formats: their detection, and the dispatch to codecs.
+//! File formats: their names, their detection, and the size that files claim.
 
-use super::channel::ALPHA;
-use super::{
-    Channel, Image, ImageError, Values, WriteOptions, exr, pfm, png, ppm, radiance, raster,
-};
+use super::ImageError;
 use crate::memory;
-use std::{
-    fmt,
-    fs::File,
-    io::{self, Read},
-    panic::catch_unwind,
-    path::Path,
-};
+use std::{fmt, path::Path};
 
 /// Maximum number of pixels in a header if the file's length does not bound it: 3 GiB of floats.
 const MAX_PIXELS: u64 = 1 << 28;
 
-/// Maximum length of a file in bytes: more than an image of that many pixels takes in any format.
-const MAX_BYTES: u64 = 1 << 33;
-
-/// Message for a file on which a decoder panics.
-pub(super) const DAMAGED: &str = "the file is damaged; save it again";
-
-/// Maximum length of a magic number.
-const MAGIC_LENGTH: u64 = 16;
+/// The maximum width and height of a WebP file.
+pub(super) const WEBP_SIDE: u32 = 16_384;
 
 /// An image file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -126,7 +111,7 @@ impl Format {
     /// Returns the maximum width and height of a file.
     pub fn largest_side(self) -> u32 {
         match self {
-            Self::Webp => raster::WEBP_SIDE,
+            Self::Webp => WEBP_SIDE,
             _ => u32::from(u16::MAX),
         }
     }
@@ -167,53 +152,6 @@ impl Format {
             .find(|format| format.suffixes().contains(&suffix.as_str()))
             .ok_or_else(|| ImageError::UnknownSuffix { path: path.to_owned(), others: &[] })
     }
-
-    /// Returns whether files of this format can store these channels.
-    pub(super) fn supports(self, channels: &[Channel]) -> bool {
-        match (self, channels) {
-            (Self::Exr, _) | (_, []) => true,
-            (_, [Channel { name, values: Values::Floats(_) }]) => self.has_alpha() && name == ALPHA,
-            _ => false,
-        }
-    }
-
-    /// Decodes a whole file; the error says what is wrong with it.
-    ///
-    /// A decoder of another crate that panics on a damaged file (by integer overflow in a debug build,
-    /// say) must not end the caller: the panic becomes an error too.
-    pub(super) fn decode(self, bytes: &[u8]) -> Result<Image, String> {
-        let decode: fn(&[u8]) -> Result<Image, String> = match self {
-            Self::Exr => exr::decode,
-            Self::Jpeg => raster::decode_jpeg,
-            Self::Pfm => pfm::decode,
-            Self::Png => png::decode,
-            Self::Ppm => ppm::decode,
-            Self::Radiance => radiance::decode,
-            Self::Tiff => raster::decode_tiff,
-            Self::Webp => raster::decode_webp,
-        };
-        catch_unwind(|| decode(bytes)).unwrap_or_else(|_| Err(DAMAGED.into()))
-    }
-
-    /// Encodes an image whose shape and options have been checked, with its channels if the format
-    /// supports them.
-    pub(super) fn encode(
-        self,
-        image: &Image,
-        channels: &[Channel],
-        options: &WriteOptions,
-    ) -> Result<Vec<u8>, String> {
-        match self {
-            Self::Exr => exr::encode(image, channels, options),
-            Self::Jpeg => raster::encode_jpeg(image, options),
-            Self::Pfm => Ok(pfm::encode(image)),
-            Self::Png => png::encode(image, alpha(channels), options),
-            Self::Ppm => Ok(ppm::encode(image, options)),
-            Self::Radiance => Err("Radiance HDR is only read".into()),
-            Self::Tiff => raster::encode_tiff(image, alpha(channels), options),
-            Self::Webp => raster::encode_webp(image, alpha(channels), options),
-        }
-    }
 }
 
 /// Joins words: `a, b or c`.
@@ -224,14 +162,6 @@ fn list(items: impl Iterator<Item = String>) -> String {
         Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
         None => String::new(),
     }
-}
-
-/// Returns the values of the alpha channel, if it exists.
-fn alpha(channels: &[Channel]) -> Option<&[f32]> {
-    channels.iter().find_map(|channel| match &channel.values {
-        Values::Floats(values) if channel.name == ALPHA => Some(values.as_slice()),
-        _ => None,
-    })
 }
 
 impl fmt::Display for Format {
@@ -247,21 +177,6 @@ impl fmt::Display for Format {
             Self::Webp => "WebP",
         })
     }
-}
-
-/// Returns the format and the content of a file. Content of an unknown format is not read to its end,
-/// nor content that is longer than any image or than the available memory.
-pub(super) fn read_file(path: &Path) -> Result<(Format, Vec<u8>), ImageError> {
-    let unreadable = |reason: io::Error| ImageError::Read { path: path.to_owned(), reason };
-    let mut file = File::open(path).map_err(unreadable)?;
-    let mut bytes = Vec::new();
-    file.by_ref().take(MAGIC_LENGTH).read_to_end(&mut bytes).map_err(unreadable)?;
-    let format = Format::of_content(&bytes)
-        .ok_or_else(|| ImageError::UnknownContent { path: path.to_owned() })?;
-    // The buffer moves to twice as much memory while it grows.
-    let limit = memory::left().map_or(MAX_BYTES, |left| MAX_BYTES.min(left.bytes / 3));
-    bytes.append(&mut memory::read_at_most(file, limit).map_err(unreadable)?);
-    Ok((format, bytes))
 }
 
 /// Returns the number of pixels in a header, after checking that it is more than 0 and at most `limit`.
@@ -297,7 +212,8 @@ pub(super) fn damaged(error: &dyn fmt::Display) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::tests::ramp;
+    use crate::image::codecs::read_file;
+    use crate::image::{WriteOptions, tests::ramp};
     use proptest::prelude::*;
 
     const ALL: [Format; 7] = Format::WRITTEN;

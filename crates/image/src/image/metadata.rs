@@ -1,7 +1,7 @@
 //! Metadata of image files: settings, seed, version.
 
-use super::{Format, ImageError, exr, format, png, ppm, raster};
-use std::{fmt::Write as _, panic::catch_unwind, path::Path};
+use super::ImageError;
+use std::fmt::Write as _;
 
 /// Ordered pairs of key and value, as stored in PNG text chunks, PPM comments, EXR comments or XMP.
 ///
@@ -106,34 +106,10 @@ fn unescape(text: &str) -> String {
     std::iter::from_fn(next).collect()
 }
 
-/// Reads the metadata of an image file; PFM and Radiance HDR have none.
-///
-/// Entries are in file order; in a PNG file of another program all Latin-1 texts come first.
-///
-/// # Errors
-/// [`ImageError::Read`], [`ImageError::UnknownContent`] and [`ImageError::Malformed`] as for
-/// [`Image::read`](super::Image::read), concerning headers.
-pub fn read_metadata(path: impl AsRef<Path>) -> Result<Metadata, ImageError> {
-    let path = path.as_ref();
-    let (format, bytes) = format::read_file(path)?;
-    let read = || match format {
-        Format::Exr => exr::metadata(&bytes),
-        Format::Jpeg => raster::jpeg_metadata(&bytes),
-        Format::Png => png::metadata(&bytes),
-        Format::Ppm => Ok(ppm::metadata(&bytes)),
-        Format::Tiff => raster::tiff_metadata(&bytes),
-        Format::Webp => raster::webp_metadata(&bytes),
-        Format::Pfm | Format::Radiance => Ok(Metadata::new()),
-    };
-    // As for images: a decoder of another crate may panic.
-    let read = catch_unwind(read).unwrap_or_else(|_| Err(format::DAMAGED.to_owned()));
-    read.map_err(|reason| ImageError::malformed(path, format, reason))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::{Image, WriteOptions};
+    use crate::image::{Image, WriteOptions, read_metadata};
 
     fn entries(pairs: &[(&str, &str)]) -> Metadata {
         pairs.iter().map(|&(key, value)| (key.to_owned(), value.to_owned())).collect()

@@ -7,6 +7,7 @@
 //! hours are spent on the image.
 
 mod channel;
+mod codecs;
 mod codes;
 pub mod compare;
 mod deflate;
@@ -25,17 +26,17 @@ pub mod tone;
 mod xmp;
 
 pub use self::channel::{Channel, Values};
+pub use self::codecs::{check_writable, read_metadata};
 pub use self::compare::{CompareError, Comparison, Difference, compare};
 pub use self::error::ImageError;
 pub use self::format::Format;
 #[cfg(feature = "drawing")]
 pub(crate) use self::format::suffix;
-pub use self::metadata::{Metadata, read_metadata};
+pub use self::metadata::Metadata;
 pub use self::options::{Depth, PpmEncoding, QUALITY, WriteOptions};
 pub use self::png::{Compression, encode_codes};
 
-use crate::{atomic, memory};
-use std::path::Path;
+use crate::memory;
 
 /// An image in linear RGB with the primaries of sRGB.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,82 +93,6 @@ impl Image {
         self.pixels.iter().flatten().filter(|value| !value.is_finite()).count() as u64
     }
 
-    /// Reads an image in any [`Format`], which is recognized by content, not by name.
-    ///
-    /// Integer codes are decoded by the sRGB curve; floats are linear already. Gray becomes RGB, and
-    /// alpha is dropped without dividing by it. Of an EXR file the first part with channels `R`, `G`,
-    /// `B`, or only `Y`, is read in its data window. Radiance values are divided by the header's
-    /// `EXPOSURE`.
-    ///
-    /// # Errors
-    /// [`ImageError::Read`] if the file cannot be read, [`ImageError::UnknownContent`] if its format is
-    /// unknown, [`ImageError::Malformed`] if it is cut off, damaged, uses an unsupported feature, or
-    /// claims more than 2^28 pixels in a compressed format.
-    pub fn read(path: impl AsRef<Path>) -> Result<Self, ImageError> {
-        let path = path.as_ref();
-        let (format, bytes) = format::read_file(path)?;
-        format.decode(&bytes).map_err(|reason| ImageError::malformed(path, format, reason))
-    }
-
-    /// Writes a file in one of [`Format::WRITTEN`], chosen by the suffix of `path` (in any case).
-    ///
-    /// EXR and PFM get the linear values unchanged, without exposure and tone, including NaN and
-    /// infinity; the others get exposed, tone-mapped, sRGB-encoded codes. PFM has no metadata. The file
-    /// is complete or absent: see [`atomic::write_atomically`].
-    ///
-    /// # Errors
-    /// [`ImageError::UnknownSuffix`]; [`ImageError::Shape`] if size and pixels of the image are
-    /// inconsistent; [`ImageError::Exposure`] and [`ImageError::Metadata`] for invalid options;
-    /// [`ImageError::Encode`] if the format cannot store the picture; [`ImageError::Write`] if the file
-    /// cannot be written.
-    pub fn write(&self, path: impl AsRef<Path>, options: &WriteOptions) -> Result<(), ImageError> {
-        self.write_layers(path, &[], options)
-    }
-
-    /// Writes an EXR file with channels in addition to `R`, `G` and `B`, or a file of another format
-    /// that [has alpha](Format::has_alpha) with the channel `A`; without additional channels the same
-    /// as [`Image::write`].
-    ///
-    /// With the alpha channel `A`, the image's colors are premultiplied. EXR stores them like this,
-    /// the other formats store straight colors.
-    ///
-    /// # Errors
-    /// Those of [`Image::write`]; [`ImageError::Layers`] for another format, and
-    /// [`ImageError::Channel`] for a name that is invalid or in use, or a number of values that differs
-    /// from the number of pixels.
-    pub fn write_layers(
-        &self,
-        path: impl AsRef<Path>,
-        channels: &[Channel],
-        options: &WriteOptions,
-    ) -> Result<(), ImageError> {
-        let path = path.as_ref();
-        let bytes = self.encode(Format::of_suffix(path)?, channels, options)?;
-        atomic::write_atomically(path, |file| file.write_all(&bytes))
-            .map_err(|reason| ImageError::Write { path: path.to_owned(), reason })
-    }
-
-    /// Returns the content of the file that [`Image::write_layers`] writes, in any writable format.
-    ///
-    /// # Errors
-    /// Those of [`Image::write_layers`], except for those of the file itself.
-    pub fn encode(
-        &self,
-        format: Format,
-        channels: &[Channel],
-        options: &WriteOptions,
-    ) -> Result<Vec<u8>, ImageError> {
-        self.check_shape()?;
-        options.check()?;
-        channel::check(channels, self.pixels.len())?;
-        if !format.supports(channels) {
-            return Err(ImageError::Layers { format });
-        }
-        format
-            .encode(self, channels, options)
-            .map_err(|reason| ImageError::Encode { format, reason })
-    }
-
     fn check_shape(&self) -> Result<(), ImageError> {
         let area = u64::from(self.width) * u64::from(self.height);
         if area == 0 || area != self.pixels.len() as u64 {
@@ -176,20 +101,6 @@ impl Image {
         }
         Ok(())
     }
-}
-
-/// Checks whether [`Image::write`] could write `path`, without changing an existing file.
-///
-/// Intended for use before a long render. Writing may still fail later, for example on a full disk.
-///
-/// # Errors
-/// [`ImageError::UnknownSuffix`], or [`ImageError::Write`] if the folder is missing or not writable, if
-/// `path` is a folder, or if it is a file that must not be written.
-pub fn check_writable(path: impl AsRef<Path>) -> Result<(), ImageError> {
-    let path = path.as_ref();
-    Format::of_suffix(path)?;
-    atomic::check_destination(path)
-        .map_err(|reason| ImageError::Write { path: path.to_owned(), reason })
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 //! compression; WebP has 8 bits and is lossless. TIFF and WebP support alpha. TIFF files of floats are
 //! read as linear radiance.
 
+use super::format::WEBP_SIDE;
 use super::{
     Depth, Image, Metadata, WriteOptions, codes,
     format::{claimed_area, damaged},
@@ -39,9 +40,6 @@ const XMP_TAG: Tag = Tag::Unknown(700);
 /// The beginning of JPEG's segment with an XMP packet, and the maximum content of any segment.
 const XMP_SEGMENT: &[u8] = b"http://ns.adobe.com/xap/1.0/\0";
 const MAX_SEGMENT: usize = 65_533;
-
-/// The maximum width and height of a WebP file.
-pub(super) const WEBP_SIDE: u32 = 16_384;
 
 pub(super) fn decode_jpeg(bytes: &[u8]) -> Result<Image, String> {
     // The decoder replaces missing data by gray. Within a scan, 0xFF does not start an end marker.

@@ -53,7 +53,8 @@ mod tile;
 pub use choose::{Asked, choose};
 pub use target::{Choice, Denoiser, Judged, MAX_ERROR, max_samples, trajectory_samples};
 
-use self::tile::{TILE, Workspace, tiles};
+use self::rows::TILE;
+use self::tile::{Workspace, tiles};
 use crate::film::{Film, Region, Role};
 use crate::image::Image;
 use crate::layers::Layers;

@@ -1,6 +1,7 @@
 //! Rows of a tile, which is passed through from top to bottom.
 
-use super::tile::TILE;
+/// Size of a tile. Predictions are also needed for [`BORDER`] pixels around it, whose rows fill rows of lanes.
+pub(super) const TILE: [u32; 2] = [120, 256];
 
 /// Columns and rows of pixels around a tile that its result depends on, and some more, so that rows of lanes fit and no row
 /// before the first is asked for.

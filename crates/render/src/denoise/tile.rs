@@ -6,14 +6,11 @@ use super::observations::{ALBEDO, COLUMNS, DEVIATIONS, IRRADIANCE, VARIANCE, WEI
 use super::regression::{
     Prediction, RADII, REACH, SQUARE, SQUARES_RADIUS, WINDOWS, pixels, predict, predict_by_squares,
 };
-use super::rows::{MARGIN, Row, Rows, STRIDE};
+use super::rows::{MARGIN, Row, Rows, STRIDE, TILE};
 use crate::film::Region;
 use crate::image::Image;
 use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask};
 use crate::layers::Features;
-
-/// Size of a tile. Predictions are also needed for [`BORDER`] pixels around it, whose rows fill rows of lanes.
-pub(super) const TILE: [u32; 2] = [120, 256];
 
 /// Edges of the squares over which errors are averaged before the choice, and choices after it.
 const ERROR_EDGE: usize = 7;

@@ -32,7 +32,7 @@ pub use part::ImagePart;
 pub(crate) use pass::{PASS, view};
 pub use preview::preview;
 pub(crate) use resumable::strata;
-pub use resumable::{ResumableRender, not_followed};
+pub use resumable::{ResumableRender, not_followed, render};
 pub use status::Status;
 pub use tasks::Tasks;
 pub use watch::Totals;
@@ -42,9 +42,7 @@ use crate::image::Image;
 use crate::integrator::clock::Times;
 use crate::integrator::counters::Counters;
 use crate::noise::{self, Noise, StopCondition};
-use crate::scene::Settings;
 use crate::trace::Tracer;
-use crate::world::World;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -173,27 +171,6 @@ impl Statistics {
         });
         Self { variance, samples: film.samples() }
     }
-}
-
-/// Renders `world` with the threads of the current rayon pool.
-///
-/// The image depends only on the world and the settings: it has the same bytes for any number of
-/// threads and any tracer; a time limit decides only the number of samples.
-///
-/// A task of a parallel iterator that waits for a render may begin the iterator's next one on the same stack, which can overflow:
-/// to render many worlds at once, call this from threads of [`std::thread`].
-///
-/// # Errors
-/// Settings out of range, or for another image size than that of the world's camera; a region that is
-/// not in the image.
-pub fn render(
-    world: &World,
-    settings: &Settings,
-    options: &Options,
-) -> Result<Render, RenderError> {
-    let mut unfinished = ResumableRender::begin(world, settings, options)?;
-    unfinished.run(world, options);
-    Ok(unfinished.render())
 }
 
 /// Returns the samples of each pass.

@@ -329,3 +329,24 @@ fn in_world_units(world: &World, settings: &Settings) -> Settings {
 pub(crate) fn strata(settings: &Settings) -> u32 {
     if settings.has_target() { FIRST_SAMPLES.min(settings.spp) } else { settings.spp }
 }
+
+/// Renders `world` with the threads of the current rayon pool.
+///
+/// The image depends only on the world and the settings: it has the same bytes for any number of
+/// threads and any tracer; a time limit decides only the number of samples.
+///
+/// A task of a parallel iterator that waits for a render may begin the iterator's next one on the same stack, which can overflow:
+/// to render many worlds at once, call this from threads of [`std::thread`].
+///
+/// # Errors
+/// Settings out of range, or for another image size than that of the world's camera; a region that is
+/// not in the image.
+pub fn render(
+    world: &World,
+    settings: &Settings,
+    options: &Options,
+) -> Result<Render, RenderError> {
+    let mut unfinished = ResumableRender::begin(world, settings, options)?;
+    unfinished.run(world, options);
+    Ok(unfinished.render())
+}

@@ -4,9 +4,10 @@
 //! of the second. So every branch has its place before anything is known of the others, and threads
 //! need not wait for each other.
 
+use super::cut::Cut;
 use super::item::{Extent, along};
 use super::segment::Segment;
-use super::{Cut, PARALLEL};
+use super::tasks::PARALLEL;
 use crate::bvh::{Bounds, DEPTH, WIDTH};
 use crate::spheres::LEAF;
 

@@ -6,7 +6,7 @@
 
 use super::branch::{self, Branch, Top};
 use super::item::{Extent, Item};
-use super::{PARALLEL, freeing};
+use super::tasks::{PARALLEL, freeing};
 use crate::bvh::{Bounds, Child, DEPTH, Node, WIDTH, child_order};
 use crate::spheres::{LEAF, Spheres};
 use rayon::prelude::*;

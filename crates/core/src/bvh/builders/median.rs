@@ -2,9 +2,9 @@
 //!
 //! (Kay & Kajiya, "Ray Tracing Complex Scenes", SIGGRAPH 1986.)
 
+use super::cut::{CROWD, Cut};
 use super::partition::Grid;
 use super::segment::Segment;
-use super::{CROWD, Cut};
 use crate::bvh::WIDTH;
 use crate::spheres::LEAF;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};

@@ -11,6 +11,7 @@
 
 mod branch;
 mod collapse;
+mod cut;
 mod item;
 mod median;
 mod morton;
@@ -18,10 +19,12 @@ mod partition;
 mod segment;
 mod surface_area;
 mod sweep;
+mod tasks;
 
 use super::Bvh;
 use crate::spheres::{LEAF, Spheres};
-use branch::{Branch, Top};
+use branch::Branch;
+use cut::Cut;
 use glam::DVec3;
 pub(crate) use item::Item;
 use median::Median;
@@ -30,12 +33,8 @@ use rayon::prelude::*;
 use segment::Segment;
 use std::sync::atomic::Ordering::Relaxed;
 use surface_area::SurfaceArea;
-
-/// Below this many spheres a subtree is built by one task: splitting costs more than it saves.
-const PARALLEL: usize = 4096;
-
-/// Number of spheres about one center from which on those that coincide are searched for.
-const CROWD: usize = 64;
+pub(crate) use tasks::collected;
+use tasks::freeing;
 
 /// With fewer rays than this for each sphere the time to build the best tree does not come back: it
 /// takes 0.07 to 0.11 us longer for a sphere (AMD EPYC, Zen 4), and saves 0.02 us of a ray in even scenes and 0.1 us in
@@ -64,33 +63,6 @@ impl Builder {
         let few = (spheres as u64).saturating_mul(RAYS_PER_SPHERE);
         if rays < few { Self::Morton } else { Self::SurfaceArea }
     }
-}
-
-/// Cuts a part of the tree in two.
-trait Cut: Sync {
-    /// Puts the spheres of the first part before those of the second; returns how many they are: a
-    /// multiple of [`LEAF`], neither 0 nor all. There is more than a leaf of spheres, and `first` come
-    /// before them.
-    fn cut(&self, segment: &mut Segment, first: usize) -> usize;
-
-    /// The cut that is used where the tree would become too deep.
-    fn median(&self) -> &Median;
-
-    /// Returns whether [`Cut::finish`] builds the subtree over this number of items.
-    fn finishes(&self, _items: usize) -> bool {
-        false
-    }
-
-    /// Makes all branches over `items`.
-    fn finish(&self, segment: Segment, branches: &mut [Branch]) -> Top {
-        branch::grow(self.median(), segment, branches, 0, 0)
-    }
-}
-
-/// The multiple of a leaf that is next to `place`, with something on both sides.
-fn snapped(place: usize, items: usize) -> usize {
-    let last = (items - 1) / LEAF;
-    ((place + LEAF / 2) / LEAF).clamp(1, last) * LEAF
 }
 
 /// Exact spheres in the user's order, if the single-precision columns cannot hold them; empty otherwise.
@@ -168,21 +140,6 @@ pub(crate) fn build_around(mut items: Vec<Item>, builder: Builder) -> (Vec<u32>,
     let around = Spheres::from_rows(items.len(), |row| (items[row].sphere, items[row].id));
     let bvh = Bvh::new(collapse::nodes(binary.branches, &around));
     (around.id, bvh)
-}
-
-/// Returns what a function gives for each number below `count`. All threads write the memory, for the system to give
-/// it to all at once.
-pub(crate) fn collected<T: Send>(count: usize, each: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
-    (0..count).into_par_iter().with_min_len(PARALLEL).map(each).collect()
-}
-
-/// Gives memory back while other threads go on: it takes the system as long as some levels of a large
-/// tree, and one thread at a time.
-fn freeing<T: Send, R: Send>(memory: Vec<T>, meanwhile: impl FnOnce() -> R + Send) -> R {
-    if memory.len() < PARALLEL {
-        return meanwhile();
-    }
-    rayon::join(|| drop(memory), meanwhile).1
 }
 
 /// Keeps the first of the user's spheres of all that coincide.

@@ -4,10 +4,11 @@
 //! (Lauterbach, Garland, Sengupta, Luebke, Manocha, "Fast BVH Construction on GPUs", Eurographics
 //! 2009), moved to the next multiple of a leaf. Where all are at one place it is halved.
 
+use super::cut::{Cut, snapped};
 use super::item::{Extent, Item, along, spread};
 use super::median::Median;
 use super::segment::Segment;
-use super::{Cut, collected, snapped};
+use super::tasks::collected;
 use crate::radix::{sort_by_digits, spaced};
 use glam::Vec3;
 use rayon::prelude::*;

@@ -11,12 +11,12 @@
 //! are small would spoil the boxes of all parts that it is in.
 
 use super::branch::{Branch, Top};
+use super::cut::{Cut, snapped};
 use super::item::{AXES, Extent, Item};
 use super::median::Median;
 use super::partition::{BINS, BinCounts, CHUNK, Counts, Grid};
 use super::segment::Segment;
 use super::sweep::{self, SWEEP};
-use super::{Cut, snapped};
 use crate::bvh::WIDTH;
 use crate::spheres::LEAF;
 use rayon::prelude::*;

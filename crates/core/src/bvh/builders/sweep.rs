@@ -3,8 +3,8 @@
 //!
 //! The spheres are ordered once on each axis; parts keep the order.
 
-use super::CROWD;
 use super::branch::{Branch, Top};
+use super::cut::CROWD;
 use super::item::{AXES, Extent, Item, along, spread};
 use super::segment::Segment;
 use super::surface_area::axes;
