@@ -12,6 +12,7 @@ GROUPS = [
     [({"wrap": True}, ["--wrap"])],
     [({"replicate": (2, 1, 1)}, ["--replicate", "2,1,1"])],
     [({"show_cell": True}, ["--cell"])],
+    [({"look": {"depth_cue": True}}, ["--depth-cue", "on"]), ({"look": {"outline": True}}, ["--outline", "on"])],
     [({"complete": True}, ["--complete", "yes"]), ({"complete": False}, ["--complete", "no"])],
     [({"outside": outside}, ["--outside", outside]) for outside in ("molecules", "whole", "none", "halves")],
     [

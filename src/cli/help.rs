@@ -129,6 +129,8 @@ const TOPICS: [(&str, &[&str]); 9] = [
         &[
             "preset",
             "background",
+            "depth_cue",
+            "outline",
             "lit_from",
             "exposure",
             "tone",

@@ -1,10 +1,11 @@
-//! Options for presets and backgrounds.
+//! Options for presets, backgrounds and what is drawn over images.
 
 use super::lists::{self, List};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use spherule_render::scene::{Background, Preset};
 use spherule_render::{color, suggest};
 
-/// Options for presets and backgrounds.
+/// Options for presets, backgrounds and what is drawn over images.
 #[derive(Clone, Debug, Default, clap::Args)]
 #[command(next_help_heading = "Style")]
 pub(in crate::cli) struct StyleArgs {
@@ -17,6 +18,12 @@ pub(in crate::cli) struct StyleArgs {
     /// white for particle files, or else the scene's background]
     #[arg(long, value_name = "COLOR", value_parser = background)]
     background: Option<BackgroundArg>,
+    /// Depth cue: far particles fade into the background: on or off [default: that of the preset or the scene]
+    #[arg(long, value_name = "on|off", value_parser = switch())]
+    depth_cue: Option<bool>,
+    /// Dark outlines of particles where the depth steps: on or off [default: those of the preset or the scene]
+    #[arg(long, value_name = "on|off", value_parser = switch())]
+    outline: Option<bool>,
 }
 
 /// A background, and its text on the command line.
@@ -24,6 +31,13 @@ pub(in crate::cli) struct StyleArgs {
 struct BackgroundArg {
     text: String,
     background: Background,
+}
+
+/// Names of a thing that is there, and of one that is not.
+const SWITCH: [&str; 2] = ["on", "off"];
+
+fn switch() -> impl TypedValueParser<Value = bool> {
+    PossibleValuesParser::new(SWITCH).map(|text| text == SWITCH[0])
 }
 
 fn preset(name: &str) -> Result<Preset, String> {
@@ -59,11 +73,24 @@ impl StyleArgs {
         self.background.as_ref().map(|typed| typed.background)
     }
 
+    /// Returns whether far particles fade, if that is given.
+    pub(in crate::cli) fn depth_cue(&self) -> Option<bool> {
+        self.depth_cue
+    }
+
+    /// Returns whether there are outlines, if that is given.
+    pub(in crate::cli) fn outline(&self) -> Option<bool> {
+        self.outline
+    }
+
     /// Settings for the image's metadata.
     pub(in crate::cli) fn list(&self) -> List {
         let mut list = List::new();
         lists::put(&mut list, "preset", self.preset.map(Preset::name));
         lists::put(&mut list, "background", self.background.as_ref().map(|typed| &*typed.text));
+        let name = |on: bool| SWITCH[usize::from(!on)];
+        lists::put(&mut list, "depth-cue", self.depth_cue.map(name));
+        lists::put(&mut list, "outline", self.outline.map(name));
         list
     }
 }

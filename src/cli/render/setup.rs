@@ -327,6 +327,8 @@ fn request(args: &RenderArgs, style: ParticleStyle, part: bool) -> Result<Reques
         up: args.views.up(),
         preset: args.style.preset(),
         background: args.style.background(),
+        depth_cue: args.style.depth_cue(),
+        outline: args.style.outline(),
         planes: args.slices.planes().to_vec(),
         slice_mode: args.slices.mode(),
         annotations: args.annotations.request(bar),

@@ -63,6 +63,10 @@ pub struct Request {
     pub lit_from: Option<Camera>,
     /// The background, instead of the preset's or the scene's.
     pub background: Option<Background>,
+    /// True to fade far particles, instead of the preset's choice or the scene's.
+    pub depth_cue: Option<bool>,
+    /// True to draw outlines, likewise.
+    pub outline: Option<bool>,
     /// Planes that cut, after those of the scene.
     pub planes: Vec<SlicePlane>,
     /// The treatment of bodies by the planes.
@@ -295,6 +299,8 @@ pub fn stage(
     let scene = &mut staged.scene;
     scene.camera.framed = camera::framed(request, scene);
     scene.look.background = request.background.unwrap_or(scene.look.background);
+    scene.look.depth_cue = request.depth_cue.unwrap_or(scene.look.depth_cue);
+    scene.look.outline = request.outline.unwrap_or(scene.look.outline);
     if let Some(sections) = &request.sections {
         sections.set_look(&mut scene.look);
     }
