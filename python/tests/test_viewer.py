@@ -141,7 +141,7 @@ def test_selections_are_set_and_followed(viewer):
     viewer.observe(lambda change: seen.append(change["new"]), "selection")
     viewer.picture()
     viewer.selection = [14, 11]
-    assert viewer.selection == [14, 11] and "11" in viewer.picked and len(viewer._session.state["marks"]) == 2
+    assert viewer.selection == [14, 11] and "11" in viewer.picked and len(viewer._session.state["drawn"]["marks"]) == 2
     assert "distance" in viewer._session.state["measures"][0]["text"]
     viewer.command("pick 'q < 0'")
     assert viewer.selection == [12, 13] and seen[-1] == [12, 13]

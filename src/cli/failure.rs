@@ -108,6 +108,16 @@ impl From<BenchError> for Failure {
 }
 
 impl Failure {
+    /// Returns it in one line, for pages.
+    pub(super) fn brief(&self) -> String {
+        let text = match self {
+            Self::Scene(error) => format!("{}: {}", error.path.display(), error.message),
+            other => other.to_string(),
+        };
+        let line = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
+        line.strip_prefix("error: ").unwrap_or(line).to_owned()
+    }
+
     /// Creates an error for options that contradict each other.
     pub(super) fn usage(command: &str, message: impl Display) -> Self {
         Self::Usage { command: command.to_owned(), message: message.to_string() }

@@ -24,7 +24,7 @@ K 0 0 3 1
 ";
 
 /// A running viewer.
-struct Server {
+pub(crate) struct Server {
     process: Process,
     /// `127.0.0.1:PORT`.
     host: String,
@@ -32,9 +32,11 @@ struct Server {
 }
 
 impl Server {
-    fn start(folder: &Folder, args: &[&str]) -> Self {
+    pub(crate) fn start(folder: &Folder, args: &[&str]) -> Self {
         let file = File::create(folder.path("address.txt")).expect("a file");
         let mut command = folder.command(&[&["view", "--no-browser"], args].concat());
+        std::fs::create_dir_all(folder.path("tmp")).expect("a folder");
+        command.env("TMPDIR", folder.path("tmp"));
         let process = Process::start(command.stdout(file));
         let read = || read_to_string(folder.path("address.txt")).expect("a file");
         wait_for("the address", || read().ends_with('\n'));
@@ -64,30 +66,58 @@ impl Server {
         (status, content.unwrap_or_default())
     }
 
+    /// Returns the page, unless it is not answered.
+    pub(crate) fn try_get(&self) -> Option<String> {
+        let mut stream = TcpStream::connect(&self.host).ok()?;
+        stream.set_read_timeout(Some(LIMIT)).ok()?;
+        let Self { host, token, .. } = self;
+        write!(stream, "GET /{token}/ HTTP/1.1\r\nHost: {host}\r\n\r\n").ok()?;
+        let mut reply = String::new();
+        stream.read_to_string(&mut reply).ok()?;
+        reply.starts_with("HTTP/1.1 200").then_some(reply)
+    }
+
+    pub(crate) fn host(&self) -> &str {
+        &self.host
+    }
+
+    pub(crate) fn token(&self) -> &str {
+        &self.token
+    }
+
+    /// Number of its process.
+    pub(crate) fn id(&self) -> u32 {
+        self.process.id()
+    }
+
     /// Opens the page's socket.
-    fn page(&self) -> Page {
+    pub(crate) fn page(&self) -> Page {
         let address = format!("ws://{}/{}/socket", self.host, self.token);
         let request = address.into_client_request().expect("a request");
         let (socket, _) = tungstenite::client(request, self.connect()).expect("a socket");
-        Page { socket, state: Value::Null, errors: Vec::new() }
+        Page { socket, state: Value::Null, errors: Vec::new(), plot: Vec::new(), mark: Value::Null }
     }
 }
 
 /// A page that reads what comes.
-struct Page {
+pub(crate) struct Page {
     socket: WebSocket<TcpStream>,
     state: Value,
     errors: Vec<String>,
+    /// Values over the frames.
+    plot: Vec<Value>,
+    /// The last mark that was answered.
+    mark: Value,
 }
 
 /// An image as it comes: its header and files.
-struct Sent {
+pub(crate) struct Sent {
     header: Value,
     files: Vec<Vec<u8>>,
 }
 
 impl Page {
-    fn send(&mut self, line: &str) {
+    pub(crate) fn send(&mut self, line: &str) {
         self.socket.send(Message::text(line)).expect("a message");
     }
 
@@ -100,6 +130,9 @@ impl Page {
                 if !message["state"].is_null() {
                     self.state = message["state"].clone();
                 }
+                self.plot
+                    .extend(message["plot"]["values"].as_array().into_iter().flatten().cloned());
+                self.mark = message["mark"].clone();
                 self.errors.extend(message["error"].as_str().map(str::to_owned));
                 None
             }
@@ -131,7 +164,7 @@ impl Page {
     }
 
     /// Reads until an image has a property.
-    fn image(&mut self, is_wanted: impl Fn(&Value) -> bool) -> Sent {
+    pub(crate) fn image(&mut self, is_wanted: impl Fn(&Value) -> bool) -> Sent {
         loop {
             if let Some(sent) = self.read().filter(|sent| is_wanted(&sent.header)) {
                 return sent;
@@ -155,7 +188,7 @@ impl Page {
     }
 }
 
-fn is_finished(header: &Value) -> bool {
+pub(crate) fn is_finished(header: &Value) -> bool {
     header["finished"] == true
 }
 
@@ -194,9 +227,14 @@ fn the_finished_image_is_the_file_of_the_command_line() {
     page.send("drag 10,10 40,20 steps=3");
     page.send("set color-by q");
     page.send("hide K");
+    page.send("set style 'q < 0: color=red'");
+    page.send("key d");
+    page.send("key o");
+    page.send("key d");
     page.send("download png");
     let file = page.image(|header| header["file"] == "view.png").files.remove(0);
-    page.until(|state| state["busy"] == false && state["hidden"][0] == "K");
+    let is_shown = |state: &Value| state["busy"] == false && state["sampled"] == 3;
+    page.until(|state| is_shown(state) && state["hidden"][0] == "K" && state["outline"] == true);
     let line = page.state["command"].as_str().expect("a command").to_owned();
     let words = shlex::split(&line).expect("words");
     let words: Vec<&str> = words.iter().skip(1).map(String::as_str).collect();
@@ -255,7 +293,7 @@ fn selected_particles_are_marked_beside_the_image() {
     let mut page = server.page();
     page.send("size 64x48");
     let plain = page.image(|header| is_finished(header) && header["width"] == 64);
-    assert_eq!(plain.header["marks"].as_array().map(Vec::len), Some(0));
+    assert_eq!(plain.header["drawn"]["marks"].as_array().map(Vec::len), Some(0));
     let ids = |state: &Value| {
         let picked = state["picked"].as_array().map_or(&[][..], Vec::as_slice);
         picked.iter().filter_map(|own| own["id"].as_f64()).collect::<Vec<_>>()
@@ -271,12 +309,16 @@ fn selected_particles_are_marked_beside_the_image() {
         page.send(&format!("mark {line}"));
         page.until(|state| ids(state) == expected);
         assert!(page.errors.is_empty(), "{line}: {:?}", page.errors);
-        assert_eq!(page.state["marks"].as_array().map(Vec::len), Some(expected.len()), "{line}");
+        assert_eq!(
+            page.state["drawn"]["marks"].as_array().map(Vec::len),
+            Some(expected.len()),
+            "{line}"
+        );
     }
     // They follow the camera, and the saved image has none.
     page.send("turn 40 0");
-    let turned = page.image(|header| is_finished(header) && header["marks"][0].is_array());
-    assert_ne!(turned.header["marks"], page.state["marks"], "turned");
+    let turned = page.image(|header| is_finished(header) && header["drawn"]["marks"][0].is_array());
+    assert_ne!(turned.header["drawn"]["marks"], page.state["drawn"]["marks"], "turned");
     page.send("turn -40 0");
     page.until(|state| state["measures"][0]["text"].is_string());
     page.send("key r");
@@ -407,4 +449,163 @@ fn bad_clients_cost_nothing() {
     page.send("size 40x30");
     page.image(|header| header["width"] == 40);
     assert!(server.process.status().is_none(), "it runs");
+}
+
+#[test]
+fn files_of_any_size_are_those_of_the_command_line_that_is_told() {
+    let folder = Folder::new();
+    folder.write("salt.xyz", SALT);
+    let server = Server::start(&folder, &["salt.xyz", "--radii", "1", "--spp", "2"]);
+    let mut page = server.page();
+    page.send("size 64x48");
+    page.send("drag 10,10 40,20 steps=3");
+    page.image(is_finished);
+    for choices in ["png size=100x60 spp=5", "exr size=80x60 until-error=20%"] {
+        page.send(&format!("download {choices}"));
+        let sent = page.image(|header| header["file"].is_string());
+        let line = sent.header["command"].as_str().expect("a command").to_owned();
+        let words = shlex::split(&line).expect("words");
+        let words: Vec<&str> = words.iter().skip(1).map(String::as_str).collect();
+        folder.succeed(&[&words[..], &["--quiet"]].concat());
+        let name = sent.header["file"].as_str().expect("a name");
+        assert!(folder.read(name) == sent.files[0], "{line}");
+    }
+    for (line, word) in [
+        ("download png size=0x5", "size"),
+        ("download png spp=many", "spp"),
+        ("download png output=x.png", "output"),
+        ("download xyz size=8x8", "xyz"),
+    ] {
+        page.send(line);
+        let error = page.error();
+        assert!(error.contains(word), "{line}: {error}");
+    }
+    page.send("download png size=4000x4000 spp=100000");
+    page.send("download png size=64x64");
+    assert!(page.error().contains("cancel"));
+    page.send("download cancel");
+    // Looking goes on meanwhile, and another file can follow.
+    page.send("turn 20 0");
+    page.image(is_finished);
+    page.send("download jpg size=40x30 spp=1");
+    page.image(|header| header["file"] == "view.jpg");
+    assert!(page.errors.is_empty(), "{:?}", page.errors);
+}
+
+#[test]
+fn files_of_scenes_are_rendered_beside_the_view() {
+    let folder = Folder::new();
+    let server = Server::start(&folder, &["--spp", "1"]);
+    let mut page = server.page();
+    page.send("size 64x48");
+    page.image(is_finished);
+    page.send("download png size=40x30 spp=2");
+    let sent = page.image(|header| header["file"] == "view.png");
+    std::fs::write(folder.path("page.png"), &sent.files[0]).expect("a file");
+    let image = Image::read(folder.path("page.png")).expect("a picture");
+    assert_eq!((image.width, image.height), (40, 30));
+}
+
+#[test]
+fn slices_are_moved_along_their_normals() {
+    let folder = Folder::new();
+    folder.write("salt.xyz", SALT);
+    let args =
+        ["salt.xyz", "--radii", "1", "--spp", "1", "--slice", "z>50%", "--slice-mode", "caps"];
+    let server = Server::start(&folder, &args);
+    let mut page = server.page();
+    page.send("size 64x48");
+    page.image(|header| is_finished(header) && header["drawn"]["handles"][0].is_array());
+    page.until(|state| state["slices"][0]["distance"] == 1.5);
+    assert_eq!(page.state["slices"][0]["range"], serde_json::json!([-1.0, 4.0]));
+    page.send("slice 0 2.25");
+    page.until(|state| state["slices"][0]["distance"] == 2.25 && state["busy"] == false);
+    assert_eq!(page.state["options"]["slice"], serde_json::json!(["z>2.25"]));
+    // One that is drawn is moved, too, and taken back.
+    page.send("key x");
+    page.send("drag 32,47 32,0");
+    page.until(|state| state["slices"][1]["distance"].is_number() && state["busy"] == false);
+    let before = page.state["slices"][1]["distance"].as_f64().expect("a number");
+    page.send(&format!("slice 1 {}", before + 0.5));
+    let after = |state: &Value| state["slices"][1]["distance"].as_f64().unwrap_or(before);
+    page.until(|state| after(state) > before + 0.4 && state["busy"] == false);
+    page.send("undo");
+    page.until(|state| after(state) == before && state["busy"] == false);
+    for line in ["slice 2 1", "slice 0 nan", "slice -1 0"] {
+        page.send(line);
+        assert!(!page.error().is_empty(), "{line}");
+    }
+}
+
+#[test]
+fn measures_are_told_for_each_frame() {
+    let folder = Folder::new();
+    let frame = |x: u32| format!("2\n\nNa 0 0 0\nCl {x} 0 0\n");
+    let frames: String = (1..=9).map(frame).collect();
+    folder.write("run.xyz", &(frames + "1\n\nNa 0 0 0\n"));
+    let server = Server::start(&folder, &["run.xyz", "--radii", "0.4", "--spp", "1"]);
+    let mut page = server.page();
+    page.send("size 40x30");
+    page.until(|state| state["frames"] == 10);
+    page.send("plot");
+    assert!(page.error().contains("particles"));
+    page.send("pick 'id 0' 'id 1'");
+    page.until(|state| state["measures"][0]["text"].is_string());
+    page.send("plot");
+    while page.plot.last() != Some(&Value::Null) {
+        page.read();
+    }
+    let values: Vec<Option<f64>> = page.plot.iter().map(Value::as_f64).collect();
+    let expected: Vec<Option<f64>> = (1..=9).map(|x| Some(f64::from(x))).chain([None]).collect();
+    assert_eq!(values, expected);
+}
+
+#[test]
+fn a_file_that_a_page_sends_is_opened_and_removed_at_the_end() {
+    let folder = Folder::new();
+    let server = Server::start(&folder, &["--spp", "1"]);
+    let mut page = server.page();
+    page.send("size 40x30");
+    page.image(is_finished);
+    let most = page.state["opens"].as_u64().expect("a number of bytes");
+    for (line, word) in [
+        (format!("open a.xyz {}", most + 1), "large"),
+        ("open scene.toml 9".to_owned(), "scene"),
+        ("open a.xyz many".to_owned(), "many"),
+    ] {
+        page.send(&line);
+        let error = page.error();
+        assert!(error.contains(word), "{line}: {error}");
+    }
+    page.send(&format!("open '../my salt.extxyz' {}", SALT.len()));
+    let (first, rest) = SALT.as_bytes().split_at(20);
+    for bytes in [first, rest] {
+        page.socket.send(Message::binary(bytes.to_vec())).expect("a message");
+    }
+    page.until(|state| state["spheres"] == 4 && state["busy"] == false);
+    // All of it is seen, in the page's shape.
+    let before = page.state["camera"]["line"].clone();
+    page.send("key home");
+    page.send("mark 1");
+    while page.mark != "1" {
+        page.read();
+    }
+    assert_eq!(page.state["camera"]["line"], before);
+    let line = page.state["command"].as_str().expect("a command").to_owned();
+    assert!(line.contains("my_salt.extxyz") && !line.contains("/my"), "{line}");
+    page.send("download png size=30x20 spp=1");
+    let sent = page.image(|header| header["file"] == "view.png");
+    assert!(sent.header["command"].as_str().is_some_and(|line| line.contains("my_salt")));
+    // Bytes of no file change nothing.
+    page.socket.send(Message::binary(vec![1; 1000])).expect("a message");
+    page.send("set color-by q");
+    page.until(|state| !state["legend"].is_null());
+    assert!(page.errors.is_empty(), "{:?}", page.errors);
+    let kept = || folder.path("tmp").read_dir().expect("a folder").count();
+    assert_eq!(kept(), 1);
+    #[cfg(target_os = "linux")]
+    {
+        server.process.signal(&["TERM"]);
+        wait_for("the end", || kept() == 0);
+    }
 }

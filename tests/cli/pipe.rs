@@ -60,7 +60,10 @@ fn a_pipe_has_messages_alone_and_ends_with_its_input() {
     // What is printed elsewhere is a message here.
     send(&format!("shown {}\nclick 20,15\n", image["picture"]));
     let picked = find(&|_, message| message["state"]["picked"][0]["id"].is_number());
-    assert!(picked["state"]["marks"][0][2].as_f64().is_some_and(|radius| radius > 0.1), "{picked}");
+    assert!(
+        picked["state"]["drawn"]["marks"][0][2].as_f64().is_some_and(|radius| radius > 0.1),
+        "{picked}"
+    );
     send("nonsense\nframe 0\nmark 7\n");
     find(&|_, message| message["error"].is_string());
     let marked = find(&|_, message| message["mark"] == "7");

@@ -9,6 +9,8 @@
 //
 //   tools/viewer/latency.mjs --socket [--stages] target/release/spherule FILE [OPTIONS of view]...
 //
+// With --link 20,40, the page is at the other end of a link of 20 Mbit/s, on which everything takes 40 ms there and back.
+//
 // Each command that a page sends has a number, and each image tells the last command that it follows. With --stages a table says
 // where the time goes from that command on: it waits for the last render, is rendered, waits for the page, is encoded, travels
 // both ways, is decoded and drawn; and how much processor time an image takes (on Linux), which other programs do not change.
@@ -16,19 +18,63 @@ import { spawn } from "node:child_process";
 import { readdirSync, readFileSync } from "node:fs";
 import { createInterface } from "node:readline";
 import { createRequire } from "node:module";
+import { connect, createServer } from "node:net";
 import path from "node:path";
 
 const words = process.argv.slice(2);
 const flags = new Set();
-while (words[0]?.startsWith("--")) flags.add(words.shift());
+let link = null;
+while (words[0]?.startsWith("--")) {
+  flags.add(words[0]);
+  if (words.shift() === "--link") link = words.shift().split(",").map(Number);
+}
 const server = spawn(words[0], ["view", "--no-browser", ...words.slice(1)], { stdio: ["ignore", "pipe", "inherit"] });
 const opened = performance.now();
-const address = await new Promise((resolve) => createInterface(server.stdout).once("line", resolve));
+let address = await new Promise((resolve) => createInterface(server.stdout).once("line", resolve));
+const through = link && (await linked(new URL(address)));
+if (through) address = address.replace(/:\d+\//, `:${through.address().port}/`);
 const SIZE = { width: 1280, height: 720 }, SECONDS = 8;
 try {
   report(await (flags.has("--socket") ? overSocket() : inBrowser()));
 } finally {
   server.kill();
+  through?.close();
+  if (through) setTimeout(() => process.exit(), 100);
+}
+
+/** A server that passes on what comes and goes as a slow link does, in both directions by itself. */
+async function linked({ hostname, port }) {
+  const [megabits, milliseconds] = link;
+  const pass = (from, to, way) => {
+    const waiting = [];
+    let held = 0;
+    from.on("data", (data) => {
+      const now = performance.now();
+      way.free = Math.max(now, way.free) + (data.length * 8) / (megabits * 1000);
+      held += data.length;
+      waiting.push(data);
+      // Routers hold little.
+      if (held > 64 << 10) from.pause();
+      setTimeout(() => {
+        // In their order, whatever the clock says.
+        const first = waiting.shift();
+        held -= first.length;
+        if (held <= 64 << 10) from.resume();
+        if (!to.destroyed) to.write(first);
+      }, way.free + milliseconds / 2 - now);
+    });
+    // After what is still on its way.
+    from.on("error", () => {}).on("close", () => setTimeout(() => to.end(), Math.max(0, way.free - performance.now()) + milliseconds));
+  };
+  const [up, down] = [{ free: 0 }, { free: 0 }];
+  const own = createServer((page) => {
+    const program = connect({ host: hostname, port: Number(port), noDelay: true });
+    page.setNoDelay(true);
+    pass(page, program, up);
+    pass(program, page, down);
+  });
+  await new Promise((resolve) => own.listen(0, "127.0.0.1", resolve));
+  return own;
 }
 
 /** Position of the pointer from the middle of the image, in a step of the drag. */

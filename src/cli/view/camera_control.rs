@@ -229,6 +229,22 @@ impl CameraControl {
         self.camera.lens = Some(Lens { aperture: lens.aperture * factor, ..lens });
     }
 
+    /// Returns the place of a point in the image, in units of its height from its center; `None` if it is not before the eye.
+    pub(super) fn place_of(&self, point: DVec3) -> Option<DVec2> {
+        let (axes, offset) = (self.axes(), point - self.eye());
+        let scale = match self.camera.projection {
+            Projection::Perspective { .. } => {
+                let ahead = offset.dot(axes.forward);
+                if ahead <= 0.0 {
+                    return None;
+                }
+                self.height() / self.distance() * ahead
+            }
+            Projection::Orthographic { .. } => self.height(),
+        };
+        Some(DVec2::new(offset.dot(axes.right), offset.dot(axes.up)) / scale)
+    }
+
     /// Returns the outline of a sphere in the image; `None` if the eye is in it, or if it reaches behind the eye.
     pub(super) fn outline(&self, middle: DVec3, radius: f64) -> Option<Outline> {
         let (axes, offset) = (self.axes(), middle - self.eye());

@@ -7,7 +7,7 @@ use super::image::Picture;
 use super::pace::Pace;
 use super::save::{Saved, encode_picture};
 use super::tiles::{self, Tile};
-use serde_json::json;
+use serde_json::{Value, json};
 use spherule_render::image::Format;
 use std::collections::VecDeque;
 use std::io::{self, Write};
@@ -38,8 +38,8 @@ pub(super) struct Shot {
     pub(super) picture: Arc<Picture>,
     /// The image with its scene, if it is finished.
     pub(super) finished: Option<Saved>,
-    /// The outlines of the selected spheres.
-    marks: Vec<[f32; 6]>,
+    /// What the page draws over it.
+    drawn: Value,
     /// The file of the finished image, once a page needs it.
     file: OnceLock<Option<Vec<u8>>>,
 }
@@ -51,9 +51,9 @@ impl Shot {
         heard: u64,
         asked: Instant,
         finished: Option<Saved>,
-        marks: Vec<[f32; 6]>,
+        drawn: Value,
     ) -> Self {
-        Self { number, heard, asked, picture, finished, marks, file: OnceLock::new() }
+        Self { number, heard, asked, picture, finished, drawn, file: OnceLock::new() }
     }
 
     /// The PNG file of a finished image, as `spherule render` writes it.
@@ -143,6 +143,11 @@ impl Client {
                 outbox.pace.record(sent.elapsed());
             }
         });
+    }
+
+    /// Maximum number of pixels of an image while the camera moves.
+    pub(super) fn pixels(&self) -> u64 {
+        self.outbox().pace.pixels()
     }
 
     /// Ends the thread that sends.
@@ -293,7 +298,7 @@ fn packed(shot: &Shot, before: Option<&Picture>, pace: Pace) -> Vec<u8> {
         "denoised": picture.before.is_some(),
         "rate": rate,
         "finished": shot.finished.is_some(),
-        "marks": shot.marks,
+        "drawn": shot.drawn,
         "kind": kind,
         "tiles": places,
         // Milliseconds, to measure.

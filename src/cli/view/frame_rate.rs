@@ -76,13 +76,14 @@ impl FrameRate {
         }
     }
 
-    /// Returns the preview for a moving camera.
-    pub(super) fn moving(self, whole: (u32, u32)) -> Moving {
+    /// Returns the preview for a moving camera, of at most so many pixels.
+    pub(super) fn moving(self, whole: (u32, u32), most: u64) -> Moving {
         match self {
             Self::Whole => Moving { size: whole, shadows: true },
             Self::Measured { rates, budget } => {
-                let [plain, shadowed] = rates.map(|rate| shrunk(whole, rate * budget));
-                let shadows = shadowed == whole;
+                let most = most as f64;
+                let [plain, shadowed] = rates.map(|rate| shrunk(whole, (rate * budget).min(most)));
+                let shadows = shadowed == shrunk(whole, most);
                 Moving { size: if shadows { shadowed } else { plain }, shadows }
             }
         }
@@ -115,15 +116,17 @@ mod tests {
         let mut frame_rate = FrameRate::measured();
         let mut measure = |rate: u64, shadows: bool| {
             (0..20).for_each(|_| frame_rate.record_time(rate, shadows, Duration::from_secs(1)));
-            frame_rate.moving(WHOLE)
+            frame_rate.moving(WHOLE, u64::MAX)
         };
         assert_eq!(measure(1_000_000_000, true), Moving { size: WHOLE, shadows: true });
         measure(1_000_000_000, false);
         assert_eq!(measure(1_000_000, true), Moving { size: WHOLE, shadows: false });
         let Moving { size, shadows } = measure(2_000_000, false);
         assert!(!shadows && (pixels(size) / (2e6 * BUDGET) - 1.0).abs() < 0.02, "{size:?}");
-        assert_eq!(FrameRate::Whole.moving(WHOLE), Moving { size: WHOLE, shadows: true });
+        assert_eq!(FrameRate::Whole.moving(WHOLE, u64::MAX), Moving { size: WHOLE, shadows: true });
         assert_eq!(shrunk((1, 1), 0.0), (1, 1));
+        let Moving { size, .. } = FrameRate::measured().moving(WHOLE, 60_000);
+        assert!((pixels(size) / 6e4 - 1.0).abs() < 0.02, "{size:?}");
     }
 
     #[test]

@@ -16,7 +16,7 @@ use crate::cli::output;
 use crate::cli::render::RenderSetup;
 use spherule_render::atomic::write_atomically;
 use spherule_render::image::{Compression, encode_codes};
-use spherule_render::scene::{Camera, Settings};
+use spherule_render::scene::{Camera, Header, Settings};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -184,7 +184,14 @@ impl<'a> Headless<'a> {
             picture,
         };
         if path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("toml")) {
-            return save_scene(&seen, &renderer.stage.scene, renderer.stage.origin.as_ref(), path);
+            let SavedImage { title, camera, settings, ref look, .. } = seen;
+            let header = Header { title, camera, settings, look };
+            return save_scene(
+                &header,
+                &renderer.stage.scene,
+                renderer.stage.origin.as_ref(),
+                path,
+            );
         }
         save_picture(&seen, path)?;
         save_bar(&self.setup, &viewer.facts, &settings)

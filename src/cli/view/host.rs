@@ -2,32 +2,40 @@
 //! to show. It knows nothing of connections.
 
 use super::client::{Client, Reply, Shot};
-use super::content::Content;
+use super::content::{Content, LookChanges};
 use super::events::{Action, Purpose};
+use super::file_render::{FileRender, Wanted};
 use super::frame_rate::FrameRate;
 use super::image::Picture;
 use super::listen::Call;
 use super::load::{LoadedScene, Origin};
 use super::loading::Loading;
 use super::options::Options;
+use super::plot::Course;
 use super::save::{Saved, encode_picture, raw_picture, save_scene};
 use super::script::{self, Step};
 use super::session;
-use super::state::{marks, state};
+use super::state::{drawn, remade, state};
 use super::viewer::Viewer;
 use super::worker::{Message, Workers};
 use crate::cli::failure::Failure;
 use crate::cli::output;
 use crate::cli::render::RenderSetup;
+use crate::cli::signals;
+use crate::cli::source::is_scene;
 use serde_json::{Value, json};
 use spherule_render::image::Format;
-use spherule_render::scene::{Camera, Scene, Settings};
+use spherule_render::scene::{Camera, Header, Scene, Settings};
 use std::collections::{HashSet, VecDeque};
-use std::path::Path;
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender};
 use std::sync::{Arc, RwLock};
 use std::thread;
 use std::time::{Duration, Instant};
+use tempfile::TempDir;
 
 /// Maximum number of inputs that are handled before pages are told.
 const BATCH: usize = 64;
@@ -42,6 +50,12 @@ const LONGEST: Duration = Duration::from_millis(500);
 
 /// Time between two states that pages are told while the camera moves.
 const PAUSE: Duration = Duration::from_millis(100);
+
+/// Maximum number of bytes of files that pages send.
+const LARGEST: u64 = 1 << 30;
+
+/// Time between two looks for a signal, while there are temporary files.
+const WATCH: Duration = Duration::from_millis(200);
 
 /// Size of the image before a page says its own.
 const SIZE: (u32, u32) = (1280, 720);
@@ -69,6 +83,15 @@ struct Followed {
     at: Instant,
 }
 
+/// A file that a page sends.
+struct Incoming {
+    page: u64,
+    file: File,
+    path: PathBuf,
+    /// Number of bytes that are still to come.
+    left: u64,
+}
+
 /// The session.
 pub(super) struct Host {
     viewer: Viewer,
@@ -88,6 +111,17 @@ pub(super) struct Host {
     early: Vec<(u64, String)>,
     /// Downloads that wait for an image.
     wanted: Vec<(u64, String)>,
+    /// Files that are rendered for pages.
+    files: Vec<(u64, FileRender)>,
+    /// Ends the measurement of all frames, if there is one.
+    plotting: Arc<AtomicBool>,
+    /// Folder of temporary files, and their number.
+    scratch: Option<TempDir>,
+    scratched: u64,
+    /// True if pages may send files; the number of bytes that they sent; and the file that comes.
+    opens: bool,
+    received: u64,
+    incoming: Option<Incoming>,
     /// Number of selections whose spheres are sought, and marks of pages that wait for them.
     selecting: usize,
     marks: Vec<(u64, String)>,
@@ -130,6 +164,7 @@ impl Host {
         let workers = Workers::start(setup, notify)?;
         let settings = Settings { width: SIZE.0, height: SIZE.1, ..Settings::default() };
         let mut viewer = Viewer::new(&Camera::default(), &settings, FrameRate::measured());
+        let opens = options.file.is_none();
         viewer.content.options = options;
         viewer.loading = Some(Loading::of(&setup.source.name()));
         workers.load(&viewer.content);
@@ -144,6 +179,13 @@ impl Host {
             steering: None,
             early: Vec::new(),
             wanted: Vec::new(),
+            files: Vec::new(),
+            plotting: Arc::default(),
+            scratch: None,
+            scratched: 0,
+            opens,
+            received: 0,
+            incoming: None,
             selecting: 0,
             marks: Vec::new(),
             greeting,
@@ -188,6 +230,13 @@ impl Host {
                 }
             }
             self.update();
+            if self.scratch.is_some() {
+                self.wake_after(WATCH);
+                if signals::received().is_some() {
+                    self.files.iter().for_each(|(_, file)| file.cancel());
+                    return Ok(());
+                }
+            }
         }
     }
 
@@ -205,12 +254,18 @@ impl Host {
             }
             Call::Left(number) => {
                 self.clients.retain(|(own, _)| *own != number);
+                self.cancel_files(number);
                 if self.steering == Some(number) {
                     self.heard = 0;
                     self.steering = self.clients.first().map(|(number, _)| *number);
                 }
             }
             Call::Shown => (),
+            Call::Bytes(number, bytes) => {
+                if let Err(message) = self.take_bytes(number, &bytes) {
+                    self.tell(number, &json!({ "error": message }).to_string());
+                }
+            }
             Call::Line(number, line) => {
                 if let Err(message) = self.obey(number, &line) {
                     self.tell(number, &json!({ "error": message }).to_string());
@@ -230,8 +285,27 @@ impl Host {
             self.tell_marks();
             return Ok(());
         }
-        if let Some(suffix) = line.strip_prefix("download ") {
-            return self.download(number, suffix.trim());
+        if let Some(words) = line.strip_prefix("download ") {
+            return match words.split_whitespace().collect::<Vec<_>>()[..] {
+                ["cancel"] => {
+                    self.cancel_files(number);
+                    Ok(())
+                }
+                [suffix, ref choices @ ..] if !choices.is_empty() => {
+                    self.render_file(number, suffix, choices)
+                }
+                _ => self.download(number, words.trim()),
+            };
+        }
+        match &script::words(line)?.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+            ["open", name, size] if self.steering == Some(number) => {
+                let size =
+                    size.parse().map_err(|_| format!("`{size}` is not a number of bytes"))?;
+                return self.receive_file(number, name, size);
+            }
+            ["plot"] => return self.plot(number, false),
+            ["plot", "periodic"] => return self.plot(number, true),
+            _ => (),
         }
         let step = script::command(line)?;
         if step.is_of_scripts() {
@@ -255,7 +329,7 @@ impl Host {
         }
         let resized = matches!(step, Step::Size(..));
         for step in step.parts() {
-            let action = self.viewer.step(&step).map_err(|failure| brief(&failure))?;
+            let action = self.viewer.step(&step).map_err(|failure| failure.brief())?;
             if let Some(action) = action {
                 self.act(number, &action)?;
             }
@@ -362,7 +436,7 @@ impl Host {
                 match selected {
                     Ok(picked) => session::select(&mut self.viewer, picked),
                     Err(failure) => {
-                        self.tell(page, &json!({ "error": brief(&failure) }).to_string());
+                        self.tell(page, &json!({ "error": failure.brief() }).to_string());
                     }
                 }
             }
@@ -382,6 +456,9 @@ impl Host {
             self.fit();
         } else {
             session::set(&mut self.viewer, &stage);
+            if self.loaded.options.file != stage.content.options.file {
+                self.fit();
+            }
         }
         if let Some(warning) = stage.warnings.first() {
             self.viewer.show_message(warning.clone());
@@ -419,15 +496,15 @@ impl Host {
         }
         let followed = self.versions.front();
         let (heard, asked) = followed.map_or((0, picture.started), |own| (own.heard, own.at));
-        let marks = marks(&self.viewer);
-        let shot = Shot::new(Arc::clone(picture), self.shots, heard, asked, finished, marks);
+        let drawn = drawn(&self.viewer);
+        let shot = Shot::new(Arc::clone(picture), self.shots, heard, asked, finished, drawn);
         let shot = Arc::new(shot);
         self.clients.iter().for_each(|(_, client)| client.show(Arc::clone(&shot)));
         self.last = Some(shot);
     }
 
     fn show_error(&mut self, failure: &Failure) {
-        let message = brief(failure);
+        let message = failure.brief();
         output::warn(&message);
         self.viewer.show_message(message);
     }
@@ -443,6 +520,8 @@ impl Host {
                 at: Instant::now(),
             }),
         }
+        let steering = self.clients.iter().find(|(number, _)| self.steering == Some(*number));
+        self.viewer.most_pixels = steering.map_or(u64::MAX, |(_, client)| client.pixels());
         if self.scene.is_some() {
             let request = self.viewer.next_request().filter(|_| !self.clients.is_empty());
             match request {
@@ -509,6 +588,7 @@ impl Host {
     fn facts(&self) -> Value {
         let mut facts = state(&self.viewer);
         facts["pages"] = json!(self.clients.len());
+        facts["opens"] = if self.opens { json!(LARGEST) } else { Value::Null };
         facts["picture"] = json!(self.shots);
         facts["busy"] = json!(self.is_loading());
         facts["sampled"] = json!(self.viewer.sampled().map_or(0, |picture| picture.samples));
@@ -531,6 +611,151 @@ impl Host {
         for (_, client) in &self.clients {
             client.reply(Reply::Text(text.to_owned()));
         }
+    }
+
+    /// Renders a file for a page, as it chooses, while looking goes on.
+    fn render_file(&mut self, number: u64, suffix: &str, choices: &[&str]) -> Result<(), String> {
+        let Some((_, client)) = self.clients.iter().find(|(own, _)| *own == number) else {
+            return Ok(());
+        };
+        self.files.retain(|(_, file)| !file.has_ended());
+        if self.files.iter().any(|(own, _)| *own == number) {
+            return Err("a file is being rendered; wait for it, or cancel it".to_owned());
+        }
+        Format::of_suffix(Path::new(&format!("view.{suffix}")))
+            .map_err(|error| error.to_string())?;
+        let Some(scene) = self.scene.as_ref().filter(|_| !self.is_loading()) else {
+            return Err("the scene is being loaded; try again".to_owned());
+        };
+        let viewer = &self.viewer;
+        let remade = remade(viewer);
+        let is_scene = remade.is_none();
+        let options = remade.unwrap_or_default();
+        if options.file.as_ref().is_some_and(|file| file == "-") {
+            return Err("standard input can be read only once; write it to a file".to_owned());
+        }
+        let mut wanted = Wanted { options, suffix: suffix.to_owned() };
+        let Settings { width, height, spp, .. } = viewer.settings;
+        let mut all = vec![format!("size={width}x{height}")];
+        if !choices
+            .iter()
+            .any(|choice| choice.starts_with("until-error=") || choice.starts_with("spp="))
+        {
+            all.push(format!("spp={spp}"));
+        }
+        let all: Vec<&str> =
+            all.iter().map(String::as_str).chain(choices.iter().copied()).collect();
+        wanted.choose(&all)?;
+        let header = (viewer.facts.title.clone(), viewer.control.camera.clone());
+        let (settings, look) = (viewer.settings.clone(), viewer.look());
+        let (scene, origin) = (Arc::clone(scene), self.origin.clone());
+        let client = Arc::clone(client);
+        let file = FileRender::default();
+        let place = self.scratch()?;
+        file.start(wanted, client, place, move |folder, options| {
+            if is_scene {
+                let path = folder.join("view.toml");
+                let (title, camera) = (&*header.0, &header.1);
+                let header = Header { title, camera, settings: &settings, look: &look };
+                save_scene(&header, &scene, origin.as_ref(), &path)?;
+                options.file = Some(path.into());
+            }
+            Ok(())
+        });
+        self.files.push((number, file));
+        Ok(())
+    }
+
+    /// Returns the path of a new temporary file or folder. All of them are removed when the session ends, by a signal, too.
+    fn scratch(&mut self) -> Result<PathBuf, String> {
+        if self.scratch.is_none() {
+            signals::catch();
+            self.scratch = Some(tempfile::tempdir().map_err(|error| error.to_string())?);
+        }
+        self.scratched += 1;
+        let folder = self.scratch.as_ref().map_or(Path::new(""), TempDir::path);
+        Ok(folder.join(self.scratched.to_string()))
+    }
+
+    /// Tells a page what the selected particles measure in each frame, as it becomes known.
+    fn plot(&mut self, number: u64, periodic: bool) -> Result<(), String> {
+        let Some((_, client)) = self.clients.iter().find(|(own, _)| *own == number) else {
+            return Ok(());
+        };
+        let viewer = &self.viewer;
+        let ids: Option<Vec<f64>> = viewer.picked.iter().map(|own| own.id).collect();
+        let ids = ids.filter(|ids| (2..=4).contains(&ids.len()));
+        let (Some(ids), Some(frames)) = (ids, viewer.facts.frames.filter(|frames| *frames > 1))
+        else {
+            return Err("select two to four particles of a file with several frames".to_owned());
+        };
+        let (content, unit) = (self.loaded.clone(), viewer.facts.unit.to_owned());
+        let course = Course { content, ids, periodic, frames, unit };
+        self.plotting.store(true, Ordering::Relaxed);
+        self.plotting = course.measure(Arc::clone(client));
+        Ok(())
+    }
+
+    /// Begins to receive a file from a page.
+    fn receive_file(&mut self, number: u64, name: &str, size: u64) -> Result<(), String> {
+        if !self.opens {
+            return Err("start `spherule view` without a file to open others".to_owned());
+        }
+        let known = |letter: char| letter.is_alphanumeric() || ".-_+".contains(letter);
+        let name: String = name.chars().map(|own| if known(own) { own } else { '_' }).collect();
+        if is_scene(Path::new(&name)) {
+            return Err("a scene names other files; open it by `spherule view`".to_owned());
+        }
+        if self.received.saturating_add(size) > LARGEST {
+            let most = LARGEST >> 20;
+            return Err(format!(
+                "{name} is too large: files of {most} MiB can be sent; open it by `spherule view`"
+            ));
+        }
+        self.received += size;
+        let failed = |error: std::io::Error| error.to_string();
+        let folder = self.scratch()?;
+        std::fs::create_dir(&folder).map_err(failed)?;
+        let path = folder.join(&name);
+        let file = File::create(&path).map_err(failed)?;
+        self.incoming = Some(Incoming { page: number, file, path, left: size });
+        self.take_bytes(number, &[])
+    }
+
+    /// Adds bytes to the file that a page sends, and opens it once it is whole. Bytes of no file are dropped.
+    fn take_bytes(&mut self, number: u64, bytes: &[u8]) -> Result<(), String> {
+        let Some(incoming) = self.incoming.as_mut().filter(|own| own.page == number) else {
+            return Ok(());
+        };
+        let written = match incoming.left.checked_sub(bytes.len() as u64) {
+            Some(left) => {
+                incoming.left = left;
+                incoming.file.write_all(bytes).map_err(|error| error.to_string())
+            }
+            None => Err("more bytes than the file has".to_owned()),
+        };
+        if written.is_err() {
+            self.incoming = None;
+            return written;
+        }
+        if incoming.left == 0 {
+            let path = std::mem::take(&mut incoming.path);
+            self.incoming = None;
+            let viewer = &mut self.viewer;
+            viewer.content =
+                Content { options: viewer.content.options.of_sent(path), ..Content::default() };
+            (viewer.takes_camera, viewer.takes_settings) = (true, true);
+            viewer.touched = LookChanges::default();
+            viewer.history.record(viewer.state(), false);
+            self.load();
+        }
+        Ok(())
+    }
+
+    /// Ends the renders of files for a page.
+    fn cancel_files(&mut self, number: u64) {
+        let own = self.files.iter().filter(|(own, _)| *own == number);
+        own.for_each(|(_, file)| file.cancel());
     }
 
     /// Sends a page the image as a file, with the suffix `toml` its scene, or with `raw` its numbers; once there is one, if
@@ -569,7 +794,7 @@ impl Host {
                     client.reply(Reply::File(json!({ "file": name }).to_string(), file));
                 }),
                 Err(failure) => {
-                    client.reply(Reply::Text(json!({ "error": brief(&failure) }).to_string()));
+                    client.reply(Reply::Text(json!({ "error": failure.brief() }).to_string()));
                 }
             }
         });
@@ -585,7 +810,7 @@ fn scene_files(
 ) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     let failed = |error| Failure::Write("view.toml".into(), error);
     let folder = tempfile::tempdir().map_err(failed)?;
-    save_scene(&saved.seen(), scene, origin, &folder.path().join("view.toml"))?;
+    save_scene(&saved.header(), scene, origin, &folder.path().join("view.toml"))?;
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder.path()).map_err(failed)? {
         let entry = entry.map_err(failed)?;
@@ -594,14 +819,4 @@ fn scene_files(
     }
     files.sort();
     Ok(files)
-}
-
-/// Returns a failure in one line.
-fn brief(failure: &Failure) -> String {
-    let text = match failure {
-        Failure::Scene(error) => format!("{}: {}", error.path.display(), error.message),
-        other => other.to_string(),
-    };
-    let line = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
-    line.strip_prefix("error: ").unwrap_or(line).to_owned()
 }

@@ -32,6 +32,8 @@ pub(super) enum Call {
     Shown,
     /// A page sent a command.
     Line(u64, String),
+    /// A page sent a part of a file.
+    Bytes(u64, Vec<u8>),
     Left(u64),
 }
 
@@ -122,6 +124,7 @@ fn converse<T: From<Call>>(
                 }
                 None => call(Call::Line(number, text.to_string())),
             },
+            Ok(Message::Binary(bytes)) => call(Call::Bytes(number, bytes.to_vec())),
             Ok(Message::Ping(_) | Message::Pong(_)) => true,
             Ok(_) | Err(_) => false,
         };

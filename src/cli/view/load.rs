@@ -144,6 +144,7 @@ impl Base {
         Facts {
             columns: own.chain(default).map(str::to_owned).collect(),
             frame: self.frame.unwrap_or(0),
+            bounds: bounds(&self.particles.spheres),
             cell: self.particles.frame.cell,
             unit: self.particles.frame.unit.symbol(),
             own_materials: self.scene.is_none()
@@ -303,11 +304,14 @@ impl Loader {
             && setup.request.style.framed.is_none();
         framing::include_points(&mut scene, &[]).map_err(failed)?;
         let count = scene.spheres.len();
+        // Those of a scene file are before them.
+        let planes = request.planes.len().min(scene.slices.len());
         let facts = Facts {
             title: setup.source.title(&scene).into_owned(),
             spheres: count,
             types: labels.kinds.table.iter().map(|kind| kind.name.clone()).collect(),
             size: compose::extent(&scene),
+            slices: scene.slices[scene.slices.len() - planes..].to_vec(),
             framed,
             lit_from: request.lit_from.clone().unwrap_or_else(|| scene.camera.clone()),
             look: scene.look,
@@ -348,6 +352,28 @@ impl Loader {
             device,
         })
     }
+}
+
+/// Visits the particles of so many frames, without hidden ones, until the visitor returns false.
+///
+/// # Errors
+/// A frame cannot be read.
+pub(super) fn visit_frames(
+    content: &Content,
+    frames: u64,
+    mut visit: impl FnMut(Particles) -> bool,
+) -> Result<(), Failure> {
+    let args = content.options.args()?;
+    let setup = RenderSetup::new(&args.render)?;
+    let mut trajectory = TrajectoryReader::default();
+    for frame in 0..frames {
+        let content = Content { frame: Some(frame), ..Content::default() };
+        let read = Base::load(&setup, &content, None, &mut trajectory, &Progress::default())?;
+        if !visit(read.particles) {
+            break;
+        }
+    }
+    Ok(())
 }
 
 impl Origin {
@@ -392,6 +418,18 @@ fn stamp(source: &Source) -> Option<(SystemTime, u64)> {
     let (Source::Particles(path, _) | Source::Toml(path)) = source else { return None };
     let data = path.metadata().ok().filter(Metadata::is_file)?;
     Some((data.modified().ok()?, data.len()))
+}
+
+/// Returns the lower and upper corner of the box of all spheres.
+fn bounds(spheres: &Spheres) -> [DVec3; 2] {
+    let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    let with = |[low, high]: [DVec3; 2], row: usize| {
+        let (center, radius) = (spheres.center(row), spheres.radius[row]);
+        [low.min(center - radius), high.max(center + radius)]
+    };
+    let join = |a: [DVec3; 2], b: [DVec3; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+    let all = (0..spheres.len()).into_par_iter().fold(|| none, with).reduce(|| none, join);
+    if spheres.is_empty() { [DVec3::ZERO; 2] } else { all }
 }
 
 /// Returns a sketch of many spheres: those that extend farthest in some directions, and others in even steps.

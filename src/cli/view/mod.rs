@@ -15,6 +15,7 @@ mod client;
 mod commands;
 mod content;
 mod events;
+mod file_render;
 mod frame_rate;
 mod headless;
 mod history;
@@ -31,6 +32,7 @@ mod overlay;
 mod pace;
 mod page;
 mod pipe;
+mod plot;
 mod python;
 mod refinement;
 mod renderer;
@@ -56,6 +58,7 @@ use super::failure::Failure;
 use super::files::{Files, STREAM};
 use super::options::appearance::BarPlace;
 use super::render::{RenderSetup, check_bar};
+use super::signals;
 use super::source::is_scene;
 use std::fmt::Write;
 use std::path::Path;
@@ -89,17 +92,22 @@ pub(super) fn run(args: &ViewerArgs, program: &clap::Command) -> Result<ExitCode
     let options = Options::of_process(program)?;
     if args.pipe {
         pipe::open(&setup, options)?;
-        return Ok(ExitCode::SUCCESS);
+        return Ok(ended());
     }
     let Some(path) = &args.headless_script else {
         page::open(&setup, args, options)?;
-        return Ok(ExitCode::SUCCESS);
+        return Ok(ended());
     };
     let steps = read_script(path)?;
     script_files(args, path, &steps).check()?;
     let json = args.render.report.json;
     let pool = setup.pool()?;
     pool.install(|| Headless::new(setup, options)?.run(&steps, json)).map(|()| ExitCode::SUCCESS)
+}
+
+/// Exit code of a view that has ended, perhaps by a signal.
+fn ended() -> ExitCode {
+    signals::received().map_or(ExitCode::SUCCESS, ExitCode::from)
 }
 
 /// Files that a script reads and writes.

@@ -9,6 +9,7 @@ use clap::{Arg, ArgMatches, Command, CommandFactory, FromArgMatches};
 use spherule_render::scene::Anchor;
 use spherule_render::suggest;
 use std::ffi::{OsStr, OsString};
+use std::path::PathBuf;
 
 /// The command, and the name of its argument for the file.
 const COMMAND: &str = "view";
@@ -26,6 +27,8 @@ const OF_PAGE: [&str; 5] = ["headless_script", "address", "port", "no_browser", 
 pub(super) struct Options {
     /// The scene or particle file; `None` for the random field.
     pub(super) file: Option<OsString>,
+    /// The name that is told in its place, if a page sent it.
+    told: Option<OsString>,
     /// Names without dashes, and values, in their order; `None` for a flag and for an option without its value.
     list: Vec<(String, Option<OsString>)>,
 }
@@ -111,6 +114,12 @@ impl Options {
         Some(value.to_string_lossy().into_owned())
     }
 
+    /// Returns the values of an option.
+    pub(super) fn all(&self, name: &str) -> Vec<Option<OsString>> {
+        let own = self.iter().filter(|(own, _)| *own == name);
+        own.map(|(_, value)| value.map(OsStr::to_owned)).collect()
+    }
+
     /// Names and values of all options.
     pub(super) fn iter(&self) -> impl Iterator<Item = (&str, Option<&OsStr>)> {
         self.list.iter().map(|(name, value)| (name.as_str(), value.as_deref()))
@@ -119,7 +128,18 @@ impl Options {
     /// Returns the options of these names alone.
     pub(super) fn restricted(&self, is_wanted: impl Fn(&str) -> bool) -> Self {
         let list = self.list.iter().filter(|(name, _)| is_wanted(name)).cloned().collect();
-        Self { file: self.file.clone(), list }
+        Self { list, ..self.clone() }
+    }
+
+    /// Returns the same options of a file that a page sent.
+    pub(super) fn of_sent(&self, path: PathBuf) -> Self {
+        let told = path.file_name().map(OsStr::to_owned);
+        Self { file: Some(path.into()), told, list: self.list.clone() }
+    }
+
+    /// Returns the name of the file as it is told.
+    pub(super) fn name(&self) -> Option<&OsStr> {
+        self.told.as_deref().or(self.file.as_deref())
     }
 
     /// Words of the options, with the file first.
@@ -147,7 +167,8 @@ impl Options {
 
     /// Returns the command that renders with these options, as one types it.
     pub(super) fn command_line(&self) -> String {
-        let words = self.words().into_iter().map(|word| word.to_string_lossy().into_owned());
+        let own = Self { file: self.name().map(OsStr::to_owned), ..self.clone() };
+        let words = own.words().into_iter().map(|word| word.to_string_lossy().into_owned());
         let line = ["spherule".to_owned(), "render".to_owned()].into_iter();
         let line: Vec<String> = line.chain(words).collect();
         shlex::try_join(line.iter().map(String::as_str)).unwrap_or_else(|_| line.join(" "))

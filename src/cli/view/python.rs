@@ -83,7 +83,7 @@ const OF_RENDERS: [(&str, &str, Kind); 10] = [
 /// Returns the lines that make the image of a particle file with these options, with a comment for each option that Python has
 /// by other means. `camera` are the keys of the camera.
 pub(super) fn lines(options: &Options, camera: &str) -> Option<String> {
-    let file = quoted(&options.file.as_ref()?.to_string_lossy());
+    let file = quoted(&options.name()?.to_string_lossy());
     let arguments = |table: &[(&str, &str, Kind)]| {
         let given = table.iter().filter_map(|(option, name, kind)| {
             let values: Vec<Option<String>> = options
@@ -99,8 +99,7 @@ pub(super) fn lines(options: &Options, camera: &str) -> Option<String> {
     let mut text = "import spherule\n\n".to_owned();
     let known = |name: &str| {
         let tables = [&OF_SCENES[..], &OF_FILES, &OF_RENDERS];
-        name == "camera"
-            || name == "output"
+        ["camera", "output", "depth-cue", "outline"].contains(&name)
             || tables.iter().any(|table| table.iter().any(|row| row.0 == name))
     };
     let others = options.iter().filter(|(name, _)| !known(name));
@@ -110,6 +109,16 @@ pub(super) fn lines(options: &Options, camera: &str) -> Option<String> {
     }
     let read = arguments(&OF_FILES);
     let mut scene = arguments(&OF_SCENES);
+    let looks = [("depth-cue", "depth_cue"), ("outline", "outline")].into_iter().filter_map(
+        |(option, key)| {
+            let on = if options.last(option)? == "on" { "True" } else { "False" };
+            Some(format!("\"{key}\": {on}"))
+        },
+    );
+    let looks: Vec<String> = looks.collect();
+    if !looks.is_empty() {
+        scene.push(format!("look={{{}}}", looks.join(", ")));
+    }
     scene.push(format!("camera={{{}}}", dictionary(camera)));
     let (call, first) = if read.is_empty() {
         ("spherule.Scene.load", file)
@@ -182,6 +191,7 @@ mod tests {
             "--style=H: color=red",
             "--radii=vdw",
             "--cell",
+            "--outline=on",
             "--size=64x48",
             "--spp=4",
         ]);
@@ -191,7 +201,7 @@ mod tests {
             particles = spherule.read(\"a \\\"b\\\".xyz\", frame=3)\n\
             scene = spherule.Scene(\n    particles,\n    styles=[\"H: color=red\"],\n    color_by=\"vx / 2\",\n    \
             color_range=(\"2%\", \"98%\"),\n    show_cell=True,\n    legend=\"top-right\",\n    \
-            camera={\"eye\": [1, 2, 3], \"target\": [0, 0, 0], \"fov\": 20},\n)\n\
+            look={\"outline\": True},\n    camera={\"eye\": [1, 2, 3], \"target\": [0, 0, 0], \"fov\": 20},\n)\n\
             scene.render(size=(64, 48), spp=4).save(\"view.png\")";
         assert_eq!(text, expected);
         assert_eq!(lines(&Options::default(), ""), None);

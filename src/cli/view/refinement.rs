@@ -19,10 +19,14 @@ impl Viewer {
         let size = (self.settings.width, self.settings.height);
         let whole = Moving { size, shadows: true };
         let shown = self.shown.as_ref().filter(|picture| picture.version == self.version);
+        let limited = self.is_dragging() && self.most_pixels < u64::MAX;
         let preview = |Moving { size, shadows }| (size, Quality::Preview { shadows }, 1);
         let (size, quality, spp) = match shown {
-            None => preview(self.frame_rate.moving(size)),
-            Some(picture) if picture.samples == 0 && picture.moving() != whole => preview(whole),
+            None => preview(self.frame_rate.moving(size, self.most_pixels)),
+            // On a slow connection, a whole preview would delay the next motion.
+            Some(picture) if picture.samples == 0 && picture.moving() != whole && !limited => {
+                preview(whole)
+            }
             Some(picture) if picture.samples >= self.settings.spp => return None,
             Some(picture) => (size, Quality::Sampled, self.more(picture.samples)),
         };

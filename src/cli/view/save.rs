@@ -46,6 +46,12 @@ impl Saved {
         })
     }
 
+    /// The head of the scene that renders to it.
+    pub(super) fn header(&self) -> Header<'_> {
+        let Self { title, camera, settings, look, .. } = self;
+        Header { title, camera, settings, look }
+    }
+
     pub(super) fn seen(&self) -> SavedImage<'_> {
         let Self { title, camera, settings, look, picture } = self;
         SavedImage { title, camera, settings, look: *look, picture }
@@ -121,16 +127,14 @@ pub(super) fn save_bar(
 
 /// Writes the scene, with its spheres in a separate file.
 pub(super) fn save_scene(
-    seen: &SavedImage,
+    header: &Header,
     scene: &RwLock<Scene>,
     origin: Option<&Origin>,
     path: &Path,
 ) -> Result<(), Failure> {
-    let SavedImage { title, camera, settings, ref look, .. } = *seen;
-    let header = Header { title, camera, settings, look };
     // Release the lock while writing, so that other threads do not wait.
     let scene = scene.read().unwrap_or_else(PoisonError::into_inner);
-    let Some(origin) = origin else { return Ok(write_as(&scene, &header, path)?) };
+    let Some(origin) = origin else { return Ok(write_as(&scene, header, path)?) };
     let whole = Scene { spheres: origin.spheres()?, ..scene.clone() };
-    Ok(write_as(&whole, &header, path)?)
+    Ok(write_as(&whole, header, path)?)
 }

@@ -18,7 +18,7 @@ const STEPS: u32 = 16;
 const MOST: usize = 1 << 20;
 
 /// Commands of scripts and of the page, with their arguments and what they do.
-pub(super) const COMMANDS: [(&str, &str, &str); 28] = [
+pub(super) const COMMANDS: [(&str, &str, &str); 29] = [
     ("size", "640x360", "set the size of the image"),
     ("scale", "1.5", "set the display's scale factor"),
     ("key", "KEY", "press a key, such as c, F, ctrl+3, home"),
@@ -48,6 +48,11 @@ pub(super) const COMMANDS: [(&str, &str, &str); 28] = [
         "pick",
         "[CONDITION]...",
         "select the particles of conditions, as in pick 'q < 0'; without one, none",
+    ),
+    (
+        "slice",
+        "N DISTANCE",
+        "move a slice, from 0, along its normal, to this distance from the origin",
     ),
     ("undo", "", "undo the last change"),
     ("redo", "", "do it again"),
@@ -123,6 +128,8 @@ pub(super) enum Step {
     Show(String),
     /// Select the particles of conditions, one condition after another.
     Pick(Vec<Selection>),
+    /// Move a slice along its normal.
+    Slice(usize, f64),
     Undo,
     Redo,
     Hover(DVec2),
@@ -158,7 +165,7 @@ pub(super) fn command(line: &str) -> Result<Step, String> {
 }
 
 /// Returns the words of a line as a shell does: in quotes are spaces, and `#`, part of a word.
-fn words(line: &str) -> Result<Vec<String>, String> {
+pub(super) fn words(line: &str) -> Result<Vec<String>, String> {
     shlex::split(line).ok_or_else(|| "a quote is not closed".to_owned())
 }
 
@@ -250,6 +257,7 @@ fn step(words: &[&str], count: Option<usize>) -> Result<Step, String> {
             let parse = |text: &&str| text.parse().map_err(|fault: Fault| fault.message);
             Step::Pick(conditions.iter().map(parse).collect::<Result<_, _>>()?)
         }
+        ["slice", index, distance] => Step::Slice(number(index)?, finite(distance)?),
         ["undo"] => Step::Undo,
         ["redo"] => Step::Redo,
         ["hover", at] => Step::Hover(place(at)?),

@@ -4,7 +4,7 @@ use super::events::{Picked, Purpose};
 use super::load::LoadedScene;
 use super::viewer::{SELECTED, Viewer};
 use crate::cli::options::views::from_side;
-use spherule_render::compose::corners;
+use spherule_render::compose::{Descriptions, corners};
 use spherule_render::scene::{Camera, Measure, Pose, Projection, Scene, Settings};
 use spherule_render::world::framing;
 use std::collections::{HashMap, HashSet};
@@ -145,10 +145,12 @@ fn find_picked(viewer: &mut Viewer, stage: &LoadedScene) {
         (0..scene.spheres.len()).filter_map(|row| Some((stage.labels.id(row)?.to_bits(), row)));
     // Of copies, the first.
     let rows: HashMap<u64, usize> = rows.filter(|(id, _)| wanted.contains(id)).rev().collect();
+    let descriptions = Descriptions::new(&stage.labels, stage.facts.size);
     viewer.picked.retain_mut(|picked| {
         let row = picked.id.and_then(|id| rows.get(&id.to_bits()));
         row.inspect(|&&row| {
             (picked.center, picked.radius) = (scene.spheres.center(row), scene.spheres.radius[row]);
+            picked.text = descriptions.text(row, picked.center, picked.radius);
         })
         .is_some()
     });

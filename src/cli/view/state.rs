@@ -12,11 +12,12 @@ use super::viewer::Viewer;
 use crate::cli::failure::Failure;
 use crate::cli::help;
 use clap::Arg;
+use glam::DVec3;
 use serde_json::{Map, Value, json};
 use spherule_render::color::{Rgb, ticks};
 use spherule_render::graphics::unmarked;
 use spherule_render::image::tone::srgb_encode;
-use spherule_render::scene::{Background, Pose, Preset, Projection};
+use spherule_render::scene::{Background, Denoise, Pose, Preset, Projection};
 use spherule_render::settings::{INTEGRATORS, SAMPLERS};
 
 /// Number of colors of a color bar.
@@ -82,10 +83,11 @@ pub(super) fn state(viewer: &Viewer) -> Value {
     let camera_line = viewer.control.camera.to_line();
     let remade = remade(viewer);
     // What is lit as for another camera is so only by the command line.
-    let python = remade.as_ref().and_then(|options| python::lines(options, &camera_line));
+    let python = remade.as_ref().and_then(|options| {
+        let options = options.restricted(|name| !["lit-from", "camera"].contains(&name));
+        python::lines(&options, &camera_line)
+    });
     let command = remade.map(|mut options| {
-        options.put("lit-from", viewer.facts.lit_from.to_line());
-        options.put("camera", &camera_line);
         options.put("output", "view.png");
         options.command_line()
     });
@@ -116,7 +118,8 @@ pub(super) fn state(viewer: &Viewer) -> Value {
         "python": python,
         "named": viewer.named,
         "picked": picked(viewer),
-        "marks": marks(viewer),
+        "drawn": drawn(viewer),
+        "slices": slices(viewer),
         "measures": measures(viewer),
         "message": viewer.message,
         "loading": viewer.loading.as_ref().map(|loading| json!([loading.text(), loading.done])),
@@ -134,17 +137,54 @@ fn picked(viewer: &Viewer) -> Vec<Value> {
     picked.map(|(at, own)| json!({ "id": own.id, "text": text(at, own) })).collect()
 }
 
-/// Returns the outlines of the selected spheres in the image that is shown: center, radii and direction of the first one.
-pub(super) fn marks(viewer: &Viewer) -> Vec<[f32; 6]> {
-    let Some(picture) = viewer.shown.as_ref().filter(|_| !viewer.picked.is_empty()) else {
-        return Vec::new();
-    };
+/// Returns what pages draw over the image that is shown: outlines of the selected spheres, and handles of slices.
+pub(super) fn drawn(viewer: &Viewer) -> Value {
+    let Some(picture) = &viewer.shown else { return Value::Null };
     let control = CameraControl::new(picture.camera.clone(), viewer.facts.size);
+    json!({ "marks": marks(viewer, &control), "handles": handles(viewer, &control) })
+}
+
+/// Returns the outlines of the selected spheres: center, radii and direction of the first one.
+fn marks(viewer: &Viewer, control: &CameraControl) -> Vec<[f32; 6]> {
     let outlines = viewer.picked.iter().filter_map(|own| control.outline(own.center, own.radius));
     let numbers = |Outline { center, radii, axis }: Outline| {
         [center.x, center.y, radii.x, radii.y, axis.x, axis.y].map(|number| number as f32)
     };
     outlines.map(numbers).collect()
+}
+
+/// Describes the slices that can be moved.
+fn slices(viewer: &Viewer) -> Vec<Value> {
+    let [low, high] = viewer.facts.bounds;
+    let texts = viewer.content.options.all("slice");
+    let describe = |(index, (normal, distance)): (usize, (DVec3, f64))| {
+        let [a, b] = [normal * low, normal * high];
+        let range = [a.min(b).element_sum(), a.max(b).element_sum()];
+        let text = texts.get(index).and_then(Option::as_ref).map(|text| text.to_string_lossy());
+        json!({ "text": text, "distance": distance, "range": range })
+    };
+    planes(viewer).enumerate().map(describe).collect()
+}
+
+/// Normals and distances of slices: those of the option, then those that were drawn.
+fn planes(viewer: &Viewer) -> impl Iterator<Item = (DVec3, f64)> {
+    let given = viewer.facts.slices.iter().map(|own| (own.normal, own.distance));
+    let drawn = viewer.content.cuts.iter().map(|cut| (cut.normal, cut.point.dot(cut.normal)));
+    given.chain(drawn)
+}
+
+/// Returns for each slice a place on its plane, and how far it moves by a unit of distance.
+fn handles(viewer: &Viewer, control: &CameraControl) -> Vec<Option<[f32; 4]>> {
+    let [low, high] = viewer.facts.bounds;
+    let middle = (low + high) / 2.0;
+    let handle = |(normal, distance): (DVec3, f64)| {
+        let at = middle + normal * (distance - middle.dot(normal));
+        let unit = 1e-3 * viewer.facts.size;
+        let place = control.place_of(at)?;
+        let along = (control.place_of(at + normal * unit)? - place) / unit;
+        Some([place.x, place.y, along.x, along.y].map(|number| number as f32))
+    };
+    planes(viewer).map(handle).collect()
 }
 
 /// Returns what the selected spheres measure, each with the value of the option that draws it: directly, and between nearest
@@ -166,9 +206,9 @@ fn measures(viewer: &Viewer) -> Vec<Value> {
     measures
 }
 
-/// Returns the options that make the image of a particle file, but for the camera; `None` for scenes, whose changes only a
+/// Returns the options that make the image of a particle file; `None` for scenes, whose changes only a
 /// scene file holds.
-fn remade(viewer: &Viewer) -> Option<Options> {
+pub(super) fn remade(viewer: &Viewer) -> Option<Options> {
     let Viewer { content, settings, touched, facts, .. } = viewer;
     facts.preset?;
     let of_camera = |name: &str| help::has("camera", name) && name != "up";
@@ -185,6 +225,11 @@ fn remade(viewer: &Viewer) -> Option<Options> {
     if let Some(chosen) = touched.background.map(background).as_ref().and_then(Value::as_str) {
         options.put("background", chosen);
     }
+    for (name, on) in [("depth-cue", touched.depth_cue), ("outline", touched.outline)] {
+        if let Some(on) = on {
+            options.put(name, if on { "on" } else { "off" });
+        }
+    }
     if let Some(condition) = content.condition() {
         let own = options.last("select").map(|own| format!("({own}) and {condition}"));
         options.put("select", own.unwrap_or(condition));
@@ -200,6 +245,12 @@ fn remade(viewer: &Viewer) -> Option<Options> {
     if settings.exposure != facts.settings.exposure {
         options.put("exposure", settings.exposure.to_string());
     }
+    if let Some(settings) = viewer.settings_of_picture() {
+        // The number of samples alone would say that it is not denoised.
+        options.put("denoise", if settings.denoise == Denoise::On { "on" } else { "off" });
+    }
+    options.put("lit-from", facts.lit_from.to_line());
+    options.put("camera", viewer.control.camera.to_line());
     Some(options)
 }
 

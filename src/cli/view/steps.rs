@@ -7,7 +7,7 @@ use super::script::Step;
 use super::viewer::Viewer;
 use crate::cli::failure::Failure;
 use crate::cli::help;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use spherule_render::scene::{Camera, Pose, Settings};
 use std::ffi::OsString;
 use std::path::Path;
@@ -79,6 +79,7 @@ impl Viewer {
             Step::Hide(name) => self.hide_type(name),
             Step::Show(name) => Some(self.show_type(name)),
             Step::Pick(selections) => Some(Action::Select(selections.clone())),
+            Step::Slice(index, distance) => self.move_slice(*index, *distance)?,
             Step::Undo => self.undo(),
             Step::Redo => self.redo(),
             Step::Hover(place) => Some(Action::Pick(self.pixel(*place), Purpose::Hover)),
@@ -91,7 +92,7 @@ impl Viewer {
             | Step::Quit => None,
         };
         if !self.is_dragging() {
-            self.history.record(self.state(), matches!(step, Step::Wheel { .. }));
+            self.history.record(self.state(), matches!(step, Step::Wheel { .. } | Step::Slice(..)));
         }
         Ok(action)
     }
@@ -123,6 +124,8 @@ impl Viewer {
         match name {
             "preset" => (self.content.preset, self.touched) = (None, LookChanges::default()),
             "background" => self.touched.background = None,
+            "depth-cue" => self.touched.depth_cue = None,
+            "outline" => self.touched.outline = None,
             "color-by" | "colors" => self.content.color = None,
             _ => (),
         }
@@ -144,6 +147,23 @@ impl Viewer {
         self.takes_camera |= help::has("camera", name);
         self.takes_settings |= help::has("light", name) || help::has("error", name);
         Ok(Some(Action::Load))
+    }
+
+    /// Moves a slice along its normal: those of the option first, then those that were drawn.
+    fn move_slice(&mut self, index: usize, distance: f64) -> Result<Option<Action>, Failure> {
+        let given: Vec<Option<OsString>> = self.content.options.all("slice");
+        if let Some(cut) =
+            index.checked_sub(given.len()).and_then(|own| self.content.cuts.get_mut(own))
+        {
+            cut.point += cut.normal * (distance - cut.point.dot(cut.normal));
+            return Ok(Some(Action::Load));
+        }
+        let Some(slice) = self.facts.slices.get(index).filter(|_| index < given.len()) else {
+            return Err(Failure::View(format!("there is no slice {index}")));
+        };
+        let mut moved = given;
+        moved[index] = Some(plane(slice.normal, distance).into());
+        self.set_option("slice", &moved)
     }
 
     pub(super) fn undo(&mut self) -> Option<Action> {
@@ -184,5 +204,16 @@ impl Viewer {
         let loads = self.content != content;
         self.content = content;
         loads.then_some(Action::Load)
+    }
+}
+
+/// Returns a plane as the option has it.
+fn plane(normal: DVec3, distance: f64) -> String {
+    let axes = [("x", DVec3::X), ("y", DVec3::Y), ("z", DVec3::Z)];
+    let along = |side: f64| axes.into_iter().find(|(_, axis)| normal == *axis * side);
+    match (along(1.0), along(-1.0)) {
+        (Some((name, _)), _) => format!("{name}>{distance}"),
+        (_, Some((name, _))) => format!("{name}<{}", -distance),
+        _ => format!("{},{},{},{distance}", normal.x, normal.y, normal.z),
     }
 }

@@ -10,10 +10,10 @@ use super::image::Picture;
 use super::keys;
 use super::loading::Loading;
 use super::tonemap::{DisplaySettings, ToneMapper};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use spherule_render::elementary::pow;
 use spherule_render::scene::particles::{Cell, Legend, Orientation};
-use spherule_render::scene::{Camera, Denoise, Look, Preset, Settings};
+use spherule_render::scene::{Camera, Denoise, Look, Preset, Settings, Slice};
 use std::sync::Arc;
 
 /// Minimum and maximum side of the image in pixels.
@@ -69,6 +69,9 @@ pub(super) struct Facts {
     /// The color scale, if colors represent numbers, and whether the image has its own color bar.
     pub(super) legend: Option<Legend>,
     pub(super) color_bar: bool,
+    /// The slices of the option, and the bounding box of the spheres before them.
+    pub(super) slices: Vec<Slice>,
+    pub(super) bounds: [DVec3; 2],
     /// The cell of the particles, and the symbol of their unit of length.
     pub(super) cell: Option<Cell>,
     pub(super) unit: &'static str,
@@ -98,6 +101,8 @@ pub(super) struct Viewer {
     pub(super) touched: LookChanges,
     pub(super) facts: Facts,
     pub(super) frame_rate: FrameRate,
+    /// Maximum number of pixels of previews, by the connection.
+    pub(super) most_pixels: u64,
     /// Type of the last clicked sphere.
     pub(super) named: Option<String>,
     /// Selected spheres, at most [`SELECTED`], in the order of their selection.
@@ -133,6 +138,7 @@ impl Viewer {
             touched: LookChanges::default(),
             facts: Facts::default(),
             frame_rate,
+            most_pixels: u64::MAX,
             named: None,
             picked: Vec::new(),
             message: String::new(),

@@ -6,16 +6,8 @@ fn control() -> CameraControl {
     CameraControl::new(Camera { pose, ..Camera::default() }, 5.0)
 }
 
-/// Projects a point to the image, in units of its height from its center.
 fn place(control: &CameraControl, point: DVec3) -> DVec2 {
-    let (axes, offset) = (control.axes(), point - control.eye());
-    let scale = match control.camera.projection {
-        Projection::Perspective { .. } => {
-            control.height() / control.distance() * offset.dot(axes.forward)
-        }
-        Projection::Orthographic { .. } => control.height(),
-    };
-    DVec2::new(offset.dot(axes.right), offset.dot(axes.up)) / scale
+    control.place_of(point).expect("a point before the eye")
 }
 
 fn near(a: DVec2, b: DVec2) -> bool {

@@ -53,10 +53,12 @@ function mount(root, connect) {
       if (restored && !message.state.busy && !message.state.loading && message.state.title) restore(message.state);
       state = message.state;
       // Of an image that is still to come, with it.
-      if (state.picture === shown?.picture) drawMarks(state.marks);
+      if (state.picture === shown?.picture) drawOver(state.drawn);
       tell();
     }
     if ("hover" in message) showTip(message.hover);
+    if (message.plot) plotted?.(message.plot);
+    if ("rendering" in message) rendering?.(message.rendering);
     if (message.error) refuse(message.error);
   }
 
@@ -85,7 +87,10 @@ function mount(root, connect) {
     const header = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, length)));
     let start = 4 + length;
     const arrived = performance.now();
-    if (header.file) return keep(header.file, new Blob([new Uint8Array(data, start)]));
+    if (header.file) {
+      rendering?.(null, header.command);
+      return keep(header.file, new Blob([new Uint8Array(data, start)]));
+    }
     const tiles = await Promise.all(header.tiles.map(async ([x, y, width, height, size]) => {
       const file = new Uint8Array(data, start, size);
       start += size;
@@ -102,7 +107,7 @@ function mount(root, connect) {
     }
     send(`shown ${header.picture}`);
     shown = header;
-    drawMarks(state?.picture === header.picture ? state.marks : header.marks);
+    drawOver(state?.picture === header.picture ? state.drawn : header.drawn);
     measure(header, { decode: decoded - arrived, draw: performance.now() - decoded });
     canvas.dataset.picture = header.picture;
     canvas.dataset.samples = header.samples;
@@ -263,12 +268,63 @@ function mount(root, connect) {
     svg.append(shape("line", { x1: a[0], y1: a[1], x2: b[0], y2: b[1] }));
   }
 
-  /** Draws rings around the selected spheres, over the image: the saved one has none. */
-  function drawMarks(marks) {
+  /** Draws over the image, which has nothing of it when it is saved: rings around selected spheres, and handles of slices. */
+  function drawOver(drawn) {
+    const aspect = canvas.width / canvas.height;
+    drawMarks(drawn?.marks ?? [], aspect);
+    const handles = drawn?.handles ?? [];
+    while (at("handles").childElementCount < handles.length) at("handles").append(handle(at("handles").childElementCount));
+    [...at("handles").children].forEach((own, index) => {
+      own.hidden = !handles[index];
+      if (own.hidden || own.held) return;
+      own.where = handles[index];
+      putHandle(own, own.where[0], own.where[1], aspect);
+    });
+  }
+
+  function putHandle(own, x, y, aspect) {
+    own.style.left = `${100 * (0.5 + x / aspect)}%`;
+    own.style.top = `${100 * (0.5 - y)}%`;
+    own.style.rotate = `${Math.atan2(-own.where[3], own.where[2])}rad`;
+  }
+
+  /** A handle that moves a slice along its normal. */
+  function handle(index) {
+    const own = make("button", { type: "button", title: "Drag, or use the arrow keys, to move the slice" }, "↔");
+    own.ariaLabel = `Slice ${index + 1}`;
+    const move = (distance) => send(`slice ${index} ${Number(distance.toPrecision(6))}`);
+    own.onpointerdown = (event) => {
+      own.setPointerCapture(event.pointerId);
+      own.held = { x: event.clientX, y: event.clientY, distance: state.slices[index].distance };
+    };
+    own.onpointermove = (event) => {
+      if (!own.held) return;
+      const [x, y, right, up] = own.where, height = stage.clientHeight, steep = Math.hypot(right, up);
+      const shift = ((event.clientX - own.held.x) * right - (event.clientY - own.held.y) * up) / height;
+      // One that faces the eye hardly moves in the image.
+      const { range } = state.slices[index];
+      const by = shift / Math.max(steep, 0.2 / (range[1] - range[0]) || 1e-9) ** 2;
+      const distance = Math.min(range[1], Math.max(range[0], own.held.distance + by));
+      putHandle(own, x + (distance - own.held.distance) * right, y + (distance - own.held.distance) * up, canvas.width / canvas.height);
+      move(distance);
+    };
+    own.onlostpointercapture = () => (own.held = null);
+    own.onkeydown = (event) => {
+      const step = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
+      if (!step) return;
+      event.preventDefault();
+      event.stopPropagation();
+      const { distance, range } = state.slices[index];
+      move(Math.min(range[1], Math.max(range[0], distance + step * (range[1] - range[0]) / 50)));
+    };
+    return own;
+  }
+
+  function drawMarks(marks, aspect) {
     const svg = at("marks");
     svg.replaceChildren();
-    if (!marks.length || !shown) return;
-    const aspect = canvas.width / canvas.height, pixel = 1 / stage.clientHeight;
+    if (!marks.length) return;
+    const pixel = 1 / stage.clientHeight;
     svg.setAttribute("viewBox", `${-aspect / 2} -0.5 ${aspect} 1`);
     const rings = marks.map(([x, y, long, short, right, up]) => {
       const radii = [long, short].map((radius) => Math.max(radius + 2 * pixel, 5 * pixel));
@@ -355,6 +411,8 @@ function mount(root, connect) {
     at("slice").setAttribute("aria-pressed", state.cutting);
     canvas.style.cursor = state.cutting ? "crosshair" : "";
     at("steer").hidden = state.pages < 2;
+    at("open").hidden = !canSend();
+    at("open").title = canSend() ? `Open a particle file, of at most ${number(state.opens / 2 ** 20)} MiB; or drop it on the image` : "";
     const [text, done] = state.loading ?? [];
     at("loading").hidden = !text;
     if (text) {
@@ -426,7 +484,7 @@ function mount(root, connect) {
     ["Particles", ["select", "hide", "model", "radii", "radius-scale", "bonds", "bond-radius", "polyhedra", "opacity"], true],
     ["Colors", ["color-by", "color-map", "color-range", "color-title", "color-log", "colors"], true],
     ["Styles", ["style"], true],
-    ["Light and look", ["preset", "background", "exposure", "integrator", "spp", "denoise"], false],
+    ["Light and look", ["preset", "background", "depth-cue", "outline", "exposure", "integrator", "spp", "denoise"], false],
     ["Slices", ["slice", "slice-mode"], false],
     ["Cell", ["cell", "wrap", "replicate", "complete", "outside"], false],
     ["Annotations", ["legend", "color-bar", "axes", "scale-bar", "label", "measure"], false],
@@ -510,8 +568,10 @@ function mount(root, connect) {
     if (option.values.length) {
       const choice = make("select", { id }, make("option", { value: "" }, "default"));
       choice.append(...option.values.map((value) => make("option", { value }, value)));
+      // Keys change the look, too.
+      const now = () => ({ "depth-cue": state.depth_cue ? "on" : "off", outline: state.outline ? "on" : "off" })[option.name] ?? values().at(-1) ?? (option.name === "preset" ? state.preset : null) ?? "";
       choice.onchange = () => (choice.value ? set(choice.value) : set());
-      refreshers.push(() => (choice.value = values().at(-1) ?? (option.name === "preset" ? state.preset ?? "" : "")));
+      refreshers.push(() => (choice.value = now()));
       return choice;
     }
     const field = make("input", { id, placeholder: option.value ?? "", autocomplete: "off", spellcheck: false });
@@ -530,7 +590,7 @@ function mount(root, connect) {
   /** A control of several values, one a field. */
   function list(option, id, values, set) {
     const entries = make("div", { className: "list" });
-    const read = () => [...entries.querySelectorAll("input")].map((input) => input.value.trim()).filter(Boolean);
+    const read = () => [...entries.querySelectorAll("input:not([type])")].map((input) => input.value.trim()).filter(Boolean);
     const entry = (value, index) => {
       const field = make("input", { value, id: index === 0 ? id : "", placeholder: option.value ?? "", autocomplete: "off", spellcheck: false, ariaLabel: `${option.name} ${index + 1}` });
       field.onchange = () => set(...read());
@@ -539,7 +599,18 @@ function mount(root, connect) {
         field.value = "";
         set(...read());
       };
-      return make("div", { className: "entry" }, field, ...(value ? [remove] : []));
+      return make("div", { className: "entry" }, ...(value && option.name === "style" ? [eye(field)] : []), field, ...(value ? [remove] : []));
+    };
+    /** Shows or hides the particles of a style, by its property. */
+    const eye = (field) => {
+      const says = /\bvisible=(yes|no)\b/, hidden = says.exec(field.value)?.[1] === "no";
+      const box = make("input", { type: "checkbox", checked: !hidden, title: "Visible", ariaLabel: `Visible: ${field.value}` });
+      box.onchange = () => {
+        const now = `visible=${box.checked ? "yes" : "no"}`;
+        field.value = says.test(field.value) ? field.value.replace(says, now) : `${field.value} ${now}`;
+        set(...read());
+      };
+      return box;
     };
     let before = null;
     refreshers.push(() => {
@@ -602,10 +673,12 @@ function mount(root, connect) {
       const kept = state.options.measure ?? [];
       const measure = ({ text, periodic, option }) => {
         const value = make("output", { className: "measure" }, periodic ? `${text}, nearest images` : text);
-        if (!option) return make("div", {}, value);
+        const over = make("button", { type: "button", hidden: (state.frames ?? 0) < 2, title: "Plot it over the frames" }, "Plot");
+      over.onclick = () => send(periodic ? "plot periodic" : "plot");
+      if (!option) return make("div", {}, value, over);
         const keep = make("button", { type: "button", disabled: kept.includes(option), title: "Draw it in the image, as --measure does" }, "Keep");
         keep.onclick = () => send(`set measure ${[...kept, option].map(quoted).join(" ")}`);
-        return make("div", {}, value, keep);
+        return make("div", {}, value, keep, over);
       };
       const none = state.picked.length ? [] : [make("div", { className: "hint" }, "Click a sphere; with Shift, several: two to four have a distance, angle or dihedral.")];
       const described = state.picked.filter(({ text }) => text != null);
@@ -613,7 +686,45 @@ function mount(root, connect) {
       const rest = more ? [make("div", { className: "hint" }, `and ${number(more)} more`)] : [];
       rows.replaceChildren(...none, ...described.map(({ text }) => make("div", {}, text)), ...rest, ...state.measures.map(measure));
     });
-    return [row, rows];
+    return [row, rows, plot()];
+  }
+
+  /** Takes what is told of values over the frames. */
+  let plotted = null;
+
+  function plot() {
+    const caption = make("figcaption"), line = shape("polyline", {}), now = shape("line", { y1: 0, y2: 100 });
+    const svg = shape("svg", { viewBox: "0 0 300 100", preserveAspectRatio: "none", role: "img" });
+    const figure = make("figure", { className: "plot", hidden: true }, caption, svg);
+    let about = null, values = [];
+    svg.append(line, now);
+    const draw = () => {
+      figure.hidden = !about;
+      if (!about) return;
+      const known = values.filter((value) => value != null), last = Math.max(1, about.frames - 1);
+      const [low, high] = known.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, -Infinity]);
+      const unit = about.unit === "°" ? "°" : about.unit && ` ${about.unit}`, short = (value) => Number(value.toPrecision(4));
+      const range = known.length ? `${short(low)} to ${short(high)}${unit}` : "not there", here = values[state.frame];
+      caption.textContent = `${about.title}: ${range}${here == null ? "" : `; frame ${number(state.frame)}: ${short(here)}${unit}`}${values.length < about.frames ? `; ${Math.round(100 * values.length / about.frames)} %` : ""}`;
+      svg.setAttribute("aria-label", caption.textContent);
+      const y = (value) => 96 - 92 * (high > low ? (value - low) / (high - low) : 0.5);
+      // As many as can be told apart.
+      const step = Math.max(1, Math.floor(values.length / 3000));
+      line.setAttribute("points", values.map((value, frame) => (value == null || frame % step ? "" : `${300 * frame / last},${y(value)}`)).join(" "));
+      for (const end of ["x1", "x2"]) now.setAttribute(end, 300 * state.frame / last);
+    };
+    svg.onclick = (event) => {
+      const { left, width } = svg.getBoundingClientRect();
+      send(`frame ${Math.round((about.frames - 1) * (event.clientX - left) / width)}`);
+    };
+    plotted = (told) => {
+      if (told.title) [about, values] = [told, []];
+      values.push(...(told.values ?? []));
+      draw();
+    };
+    let before = null;
+    refreshers.push(() => state.frame !== before && ((before = state.frame), draw()));
+    return figure;
   }
 
   function types() {
@@ -633,10 +744,27 @@ function mount(root, connect) {
     return rows;
   }
 
+  /** Tells how far a file is that is rendered beside the view, or the command line that makes it. */
+  let rendering = null;
+
   function save() {
+    const field = (name, placeholder, title) => {
+      const own = make("input", { id: `file-${name}`, placeholder, autocomplete: "off", spellcheck: false });
+      return [own, make("div", { className: "row", title }, make("label", { htmlFor: own.id }, name), own)];
+    };
+    const [size, sizeRow] = field("size", "that of the page, or 3840x2160", "Width and height in pixels, or on paper, as in 85mm");
+    const [quality, qualityRow] = field("samples or error", "as shown, or 256, or 1%", "Samples per pixel, or the error to reach");
+    const chosen = () => [size.value.trim() && `size=${size.value.trim().replaceAll(" ", "")}`, quality.value.trim() && `${quality.value.includes("%") ? "until-error" : "spp"}=${quality.value.trim().replaceAll(" ", "")}`].filter(Boolean);
+    const status = make("div", { role: "status", className: "hint" });
+    const cancel = make("button", { type: "button", hidden: true }, "Cancel");
+    cancel.onclick = () => send("download cancel");
+    rendering = (text, command) => {
+      cancel.hidden = text == null;
+      status.textContent = text ?? (command ? `Saved, as by: ${command}` : "");
+    };
     const files = make("div", { className: "buttons" }, ...["png", "jpg", "tif", "exr", "toml"].map((suffix) => {
       const button = make("button", { type: "button" }, suffix === "toml" ? "Scene (.toml)" : suffix.toUpperCase());
-      button.onclick = () => send(`download ${suffix}`);
+      button.onclick = () => send(["download", suffix, ...(suffix === "toml" ? [] : chosen())].join(" "));
       return button;
     }));
     const [line, python] = ["Command line", "Python"].map((name) => make("pre", { ariaLabel: name, tabIndex: 0 }));
@@ -644,7 +772,31 @@ function mount(root, connect) {
       line.textContent = state.command ?? "";
       python.textContent = state.python ?? "";
     });
-    return section("Save", false, [files, make("div", {}, "The command that makes this image:"), line, make("div", {}, "In Python:"), python]);
+    return section("Save", false, [sizeRow, qualityRow, files, status, cancel, make("div", {}, "The command that makes this image:"), line, make("div", {}, "In Python:"), python]);
+  }
+
+  // Files -------------------------------------------------------------------------------------------------------------
+
+  /** Whether files can be sent: to a view that was started without one, not from a notebook. */
+  const canSend = () => root === document && state?.opens;
+  at("open").onclick = () => at("file").click();
+  at("file").onchange = () => at("file").files[0] && sendFile(at("file").files[0]);
+  stage.ondragover = (event) => canSend() && event.preventDefault();
+  stage.ondrop = (event) => {
+    const [file] = event.dataTransfer.files;
+    if (!canSend() || !file) return;
+    event.preventDefault();
+    sendFile(file);
+  };
+
+  async function sendFile(file) {
+    if (file.size > state.opens) return toast(`${file.name} has more than ${number(state.opens / 2 ** 20)} MiB; open it by spherule view`);
+    send(`open ${quoted(file.name)} ${file.size}`);
+    const piece = 48 * 1024;
+    for (let start = 0; start < file.size; start += piece) {
+      if (!(await sendLine(await file.slice(start, start + piece).arrayBuffer()))) return toast("the connection was lost; open the file again");
+      if (start % (64 * piece) === 0) at("status").textContent = `sending ${file.name}: ${Math.round(100 * start / file.size)} %`;
+    }
   }
 
   for (const button of root.querySelectorAll("[data-line]")) {
@@ -705,7 +857,17 @@ function overSocket(hearing, wait = 250) {
     };
   };
   open();
-  return (line) => socket.readyState === WebSocket.OPEN && (socket.send(line), true);
+  return (line) => {
+    if (socket.readyState !== WebSocket.OPEN) return false;
+    socket.send(line);
+    // Pieces of files wait for those before.
+    return typeof line === "string" || drained(socket);
+  };
+}
+
+async function drained(socket) {
+  while (socket.bufferedAmount > 1 << 20) await new Promise((resolve) => setTimeout(resolve, 20));
+  return socket.readyState === WebSocket.OPEN;
 }
 
 /** Shows the view in an output of a notebook, as anywidget calls it. */
