@@ -4,6 +4,7 @@
 #![cfg(feature = "cli")]
 
 mod annotations;
+mod bad_clients;
 mod bench;
 mod documents;
 mod figures;
