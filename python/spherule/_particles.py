@@ -429,7 +429,7 @@ def frames(
     elements: Mapping[str, str] | None = None,
     bonds: str | None = None,
 ) -> Iterator[Particles]:
-    """The frames of a particle file, one after the other. The next ones are read while one is used: at most two, if memory is left.
+    """The frames of a particle file, one after the other. Up to two are read ahead while one is used.
 
     Args:
         path, format, columns, atom_style, topology, elements, bonds: As for :func:`read`.

@@ -6,7 +6,7 @@ use super::content::{Content, LookChanges};
 use super::events::{Action, Purpose};
 use super::file_render::{FileRender, Wanted};
 use super::frame_rate::FrameRate;
-use super::image::Picture;
+use super::image::{Picture, RenderRequest};
 use super::listen::Call;
 use super::load::{LoadedScene, Origin};
 use super::loading::Loading;
@@ -523,7 +523,11 @@ impl Host {
         let steering = self.clients.iter().find(|(number, _)| self.steering == Some(*number));
         self.viewer.most_pixels = steering.map_or(u64::MAX, |(_, client)| client.pixels());
         if self.scene.is_some() {
-            let request = self.viewer.next_request().filter(|_| !self.clients.is_empty());
+            // While another frame of the file is read, better images of this one would take its time.
+            let plays = self.viewer.content.frame != self.loaded.frame;
+            let is_wanted =
+                |request: &RenderRequest| !self.clients.is_empty() && (request.first || !plays);
+            let request = self.viewer.next_request().filter(is_wanted);
             match request {
                 Some(request) if request.first && !self.is_due() => {
                     self.workers.request_image(None);

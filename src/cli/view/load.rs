@@ -22,7 +22,7 @@ use std::collections::HashSet;
 use std::fs::Metadata;
 use std::path::Path;
 use std::sync::{Arc, OnceLock, RwLock};
-use std::time::SystemTime;
+use std::time::{Duration, Instant, SystemTime};
 
 /// Maximum length in bytes of a file whose frames are counted at once.
 const SHORT: u64 = 1 << 26;
@@ -32,6 +32,10 @@ const USUAL: [&str; 5] = ["x", "y", "z", "radius", "type"];
 
 /// Number of spheres from which no second copy is kept, so that they are read again if necessary.
 const MANY: usize = 1 << 20;
+
+/// Time after a scene within which the next one shows that frames play: most of them are seen as previews alone, for which the tree
+/// that is built fastest is best.
+const PLAYING: Duration = Duration::from_secs(1);
 
 /// Number of spheres in the sketch of a large scene, which is used if only the outline matters.
 const SKETCH: usize = 100_000;
@@ -237,6 +241,8 @@ pub(super) struct Loader {
     /// Number of frames of the file, once it is known.
     frames: Arc<OnceLock<u64>>,
     counts: bool,
+    /// Time when the last scene was loaded.
+    loaded: Option<Instant>,
 }
 
 impl Loader {
@@ -324,7 +330,9 @@ impl Loader {
             ..facts
         };
         progress.begin(Step::Building(count));
-        let samples = u64::from(scene.settings.width) * u64::from(scene.settings.height) * 64;
+        let plays = self.loaded.is_some_and(|time| time.elapsed() < PLAYING);
+        let pixels = u64::from(scene.settings.width) * u64::from(scene.settings.height);
+        let samples = if plays { 0 } else { 64 * pixels };
         let builder = setup.builder(count, samples);
         let mut world = if many {
             let sketch = sketch(&scene.spheres);
@@ -340,6 +348,7 @@ impl Loader {
         let device = Attached::to(&mut world, &scene.settings, setup.speed.device);
         warnings.extend(device.refusal());
         let scene = Arc::new(RwLock::new(scene));
+        self.loaded = Some(Instant::now());
         Ok(LoadedScene {
             scene,
             world,

@@ -224,13 +224,12 @@ struct ViewBox {
 
 impl ViewBox {
     fn of(scene: &Scene, axes: &Axes) -> Self {
-        let mut bounds = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
-        for (center, radius) in targets(scene) {
+        let bounds = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
+        // Not a loop: that would ask for each whether it is the last sphere.
+        targets(scene).fold(bounds, |Self { low, high }, (center, radius)| {
             let center = axes.coordinates(center);
-            bounds.low = bounds.low.min(center - radius);
-            bounds.high = bounds.high.max(center + radius);
-        }
-        bounds
+            Self { low: low.min(center - radius), high: high.max(center + radius) }
+        })
     }
 }
 

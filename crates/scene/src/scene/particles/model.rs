@@ -92,17 +92,18 @@ pub(super) fn apply(
     bond_radius: Option<f64>,
     parts: &[Part],
 ) {
+    if parts.is_empty() && !base.draws_bonds() {
+        return;
+    }
     let Some(median) = median(&particles.spheres.radius) else { return };
     let radii = &mut particles.spheres.radius;
     let least = radii.iter().copied().fold(f64::INFINITY, f64::min);
     if parts.is_empty() {
-        if base.draws_bonds() {
-            let stick = bond_radius.unwrap_or_else(|| base.stick(median, least));
-            for radius in radii.iter_mut() {
-                *radius = base.radius(*radius, stick);
-            }
-            particles.stick_radius = stick;
+        let stick = bond_radius.unwrap_or_else(|| base.stick(median, least));
+        for radius in radii.iter_mut() {
+            *radius = base.radius(*radius, stick);
         }
+        particles.stick_radius = stick;
         return;
     }
     let count = radii.len();
