@@ -18,7 +18,7 @@ const SECONDS: u64 = 4;
 const CROWD: usize = 100;
 
 /// Growth of memory that is allowed, in KiB: what allocators and pools of threads keep.
-const GROWTH: u64 = 96 << 10;
+const GROWTH: u64 = 64 << 10;
 
 /// Words of commands.
 const WORDS: &str = "size scale key click double-click press move release drag wheel turn set camera unset frame hide show pick \

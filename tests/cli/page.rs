@@ -483,10 +483,10 @@ fn files_of_any_size_are_those_of_the_command_line_that_is_told() {
     page.send("download png size=4000x4000 spp=100000");
     page.send("download png size=64x64");
     assert!(page.error().contains("cancel"));
-    page.send("download cancel");
     // Looking goes on meanwhile, and another file can follow.
     page.send("turn 20 0");
     page.image(is_finished);
+    page.send("download cancel");
     page.send("download jpg size=40x30 spp=1");
     page.image(|header| header["file"] == "view.jpg");
     assert!(page.errors.is_empty(), "{:?}", page.errors);

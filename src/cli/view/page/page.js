@@ -278,6 +278,8 @@ function mount(root, connect) {
       own.hidden = !handles[index];
       if (own.hidden || own.held) return;
       own.where = handles[index];
+      const { range, distance } = state?.slices[index] ?? { range: [0, 0], distance: 0 };
+      Object.assign(own, { ariaValueMin: range[0], ariaValueMax: range[1], ariaValueNow: distance });
       putHandle(own, own.where[0], own.where[1], aspect);
     });
   }
@@ -291,7 +293,7 @@ function mount(root, connect) {
   /** A handle that moves a slice along its normal. */
   function handle(index) {
     const own = make("button", { type: "button", title: "Drag, or use the arrow keys, to move the slice" }, "↔");
-    own.ariaLabel = `Slice ${index + 1}`;
+    Object.assign(own, { role: "slider", ariaLabel: `Slice ${index + 1}` });
     const move = (distance) => send(`slice ${index} ${Number(distance.toPrecision(6))}`);
     own.onpointerdown = (event) => {
       own.setPointerCapture(event.pointerId);
