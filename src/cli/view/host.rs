@@ -13,7 +13,9 @@ use super::loading::Loading;
 use super::options::Options;
 use super::plot::Course;
 use super::save::{Saved, encode_picture, raw_picture, save_scene};
+use super::scratch::Scratch;
 use super::script::{self, Step};
+use super::sent_file::{LARGEST, SentFiles};
 use super::session;
 use super::state::{drawn, remade, state};
 use super::viewer::Viewer;
@@ -22,20 +24,16 @@ use crate::cli::failure::Failure;
 use crate::cli::output;
 use crate::cli::render::RenderSetup;
 use crate::cli::signals;
-use crate::cli::source::is_scene;
 use serde_json::{Value, json};
 use spherule_render::image::Format;
 use spherule_render::scene::{Camera, Header, Scene, Settings};
 use std::collections::{HashSet, VecDeque};
-use std::fs::File;
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender};
 use std::sync::{Arc, RwLock};
 use std::thread;
 use std::time::{Duration, Instant};
-use tempfile::TempDir;
 
 /// Maximum number of inputs that are handled before pages are told.
 const BATCH: usize = 64;
@@ -50,9 +48,6 @@ const LONGEST: Duration = Duration::from_millis(500);
 
 /// Time between two states that pages are told while the camera moves.
 const PAUSE: Duration = Duration::from_millis(100);
-
-/// Maximum number of bytes of files that pages send.
-const LARGEST: u64 = 1 << 30;
 
 /// Time between two looks for a signal, while there are temporary files.
 const WATCH: Duration = Duration::from_millis(200);
@@ -83,15 +78,6 @@ struct Followed {
     at: Instant,
 }
 
-/// A file that a page sends.
-struct Incoming {
-    page: u64,
-    file: File,
-    path: PathBuf,
-    /// Number of bytes that are still to come.
-    left: u64,
-}
-
 /// The session.
 pub(super) struct Host {
     viewer: Viewer,
@@ -115,13 +101,10 @@ pub(super) struct Host {
     files: Vec<(u64, FileRender)>,
     /// Ends the measurement of all frames, if there is one.
     plotting: Arc<AtomicBool>,
-    /// Folder of temporary files, and their number.
-    scratch: Option<TempDir>,
-    scratched: u64,
-    /// True if pages may send files; the number of bytes that they sent; and the file that comes.
-    opens: bool,
-    received: u64,
-    incoming: Option<Incoming>,
+    /// Temporary files.
+    scratch: Scratch,
+    /// Files that pages send, if they may.
+    sent: Option<SentFiles>,
     /// Number of selections whose spheres are sought, and marks of pages that wait for them.
     selecting: usize,
     marks: Vec<(u64, String)>,
@@ -164,7 +147,7 @@ impl Host {
         let workers = Workers::start(setup, notify)?;
         let settings = Settings { width: SIZE.0, height: SIZE.1, ..Settings::default() };
         let mut viewer = Viewer::new(&Camera::default(), &settings, FrameRate::measured());
-        let opens = options.file.is_none();
+        let sent = options.file.is_none().then(SentFiles::default);
         viewer.content.options = options;
         viewer.loading = Some(Loading::of(&setup.source.name()));
         workers.load(&viewer.content);
@@ -181,11 +164,8 @@ impl Host {
             wanted: Vec::new(),
             files: Vec::new(),
             plotting: Arc::default(),
-            scratch: None,
-            scratched: 0,
-            opens,
-            received: 0,
-            incoming: None,
+            scratch: Scratch::default(),
+            sent,
             selecting: 0,
             marks: Vec::new(),
             greeting,
@@ -230,7 +210,7 @@ impl Host {
                 }
             }
             self.update();
-            if self.scratch.is_some() {
+            if self.scratch.is_used() {
                 self.wake_after(WATCH);
                 if signals::received().is_some() {
                     self.files.iter().for_each(|(_, file)| file.cancel());
@@ -592,7 +572,7 @@ impl Host {
     fn facts(&self) -> Value {
         let mut facts = state(&self.viewer);
         facts["pages"] = json!(self.clients.len());
-        facts["opens"] = if self.opens { json!(LARGEST) } else { Value::Null };
+        facts["opens"] = json!(self.sent.is_some().then_some(LARGEST));
         facts["picture"] = json!(self.shots);
         facts["busy"] = json!(self.is_loading());
         facts["sampled"] = json!(self.viewer.sampled().map_or(0, |picture| picture.samples));
@@ -655,7 +635,7 @@ impl Host {
         let (scene, origin) = (Arc::clone(scene), self.origin.clone());
         let client = Arc::clone(client);
         let file = FileRender::default();
-        let place = self.scratch()?;
+        let place = self.scratch.place()?;
         file.start(wanted, client, place, move |folder, options| {
             if is_scene {
                 let path = folder.join("view.toml");
@@ -668,17 +648,6 @@ impl Host {
         });
         self.files.push((number, file));
         Ok(())
-    }
-
-    /// Returns the path of a new temporary file or folder. All of them are removed when the session ends, by a signal, too.
-    fn scratch(&mut self) -> Result<PathBuf, String> {
-        if self.scratch.is_none() {
-            signals::catch();
-            self.scratch = Some(tempfile::tempdir().map_err(|error| error.to_string())?);
-        }
-        self.scratched += 1;
-        let folder = self.scratch.as_ref().map_or(Path::new(""), TempDir::path);
-        Ok(folder.join(self.scratched.to_string()))
     }
 
     /// Tells a page what the selected particles measure in each frame, as it becomes known.
@@ -702,49 +671,17 @@ impl Host {
 
     /// Begins to receive a file from a page.
     fn receive_file(&mut self, number: u64, name: &str, size: u64) -> Result<(), String> {
-        if !self.opens {
+        let Some(sent) = &mut self.sent else {
             return Err("start `spherule view` without a file to open others".to_owned());
-        }
-        let known = |letter: char| letter.is_alphanumeric() || ".-_+".contains(letter);
-        let name: String = name.chars().map(|own| if known(own) { own } else { '_' }).collect();
-        if is_scene(Path::new(&name)) {
-            return Err("a scene names other files; open it by `spherule view`".to_owned());
-        }
-        if self.received.saturating_add(size) > LARGEST {
-            let most = LARGEST >> 20;
-            return Err(format!(
-                "{name} is too large: files of {most} MiB can be sent; open it by `spherule view`"
-            ));
-        }
-        self.received += size;
-        let failed = |error: std::io::Error| error.to_string();
-        let folder = self.scratch()?;
-        std::fs::create_dir(&folder).map_err(failed)?;
-        let path = folder.join(&name);
-        let file = File::create(&path).map_err(failed)?;
-        self.incoming = Some(Incoming { page: number, file, path, left: size });
+        };
+        sent.begin(number, name, size, &self.scratch.place()?)?;
         self.take_bytes(number, &[])
     }
 
-    /// Adds bytes to the file that a page sends, and opens it once it is whole. Bytes of no file are dropped.
+    /// Adds bytes to the file that a page sends, and opens it once it is whole.
     fn take_bytes(&mut self, number: u64, bytes: &[u8]) -> Result<(), String> {
-        let Some(incoming) = self.incoming.as_mut().filter(|own| own.page == number) else {
-            return Ok(());
-        };
-        let written = match incoming.left.checked_sub(bytes.len() as u64) {
-            Some(left) => {
-                incoming.left = left;
-                incoming.file.write_all(bytes).map_err(|error| error.to_string())
-            }
-            None => Err("more bytes than the file has".to_owned()),
-        };
-        if written.is_err() {
-            self.incoming = None;
-            return written;
-        }
-        if incoming.left == 0 {
-            let path = std::mem::take(&mut incoming.path);
-            self.incoming = None;
+        let Some(sent) = &mut self.sent else { return Ok(()) };
+        if let Some(path) = sent.take(number, bytes)? {
             let viewer = &mut self.viewer;
             viewer.content =
                 Content { options: viewer.content.options.of_sent(path), ..Content::default() };

@@ -3,7 +3,7 @@
 //! A render is an [`Image`] of linear radiance. [`Image::write`] writes it to a file: unchanged (EXR,
 //! PFM), or exposed, tone-mapped and sRGB-encoded for a display (all others). [`Image::read`] is the
 //! inverse, for environment maps and for [`compare()`]. Files are written atomically
-//! ([`atomic::write_atomically`]), and [`check_writable`] detects an unwritable destination before
+//! ([`write_atomically`](crate::atomic::write_atomically)), and [`check_writable`] detects an unwritable destination before
 //! hours are spent on the image.
 
 mod channel;
