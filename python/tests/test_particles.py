@@ -79,7 +79,7 @@ def test_frames_are_numbered_from_either_end(folder):
     assert spherule.count_frames(long) == 42
     several = spherule.frames(long)
     assert [next(several).x[0] for _ in range(40)] == list(range(40))
-    with pytest.raises(spherule.Error, match="line 163"):
+    with pytest.raises(spherule.Error, match=r"long\.xyz:163:7: `x`"):
         next(several)
     first, last = spherule.read(path), spherule.read(path, np.int64(-1))
     assert spherule.read(path, -2).step == first.step == 5 and last.step == spherule.read(path, 1).step == 9
