@@ -4,6 +4,7 @@ pub(crate) use super::line::Line;
 use super::line::end_lines;
 use crate::{FileError, place::Place, source::Bytes, source::Source};
 use memchr::{memchr, memchr_iter};
+use std::any::Any;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::Path;
@@ -216,6 +217,20 @@ impl Lines {
         (self.start, self.end, self.settled, self.last) = (0, 0, 0, 0);
         (self.ended, self.returned) = (false, false);
         Ok(true)
+    }
+
+    /// Starts at the place of a line, with what its reader knew there of earlier frames. Returns whether it did.
+    pub(crate) fn start_with<T: Any + Send + Sync>(
+        &mut self,
+        place: &Place,
+        known: &mut Arc<T>,
+    ) -> Result<bool, FileError> {
+        let Some(state) = place.state() else { return Ok(false) };
+        let started = self.start_at(place)?;
+        if started {
+            *known = state;
+        }
+        Ok(started)
     }
 
     /// Returns an error after the last line.

@@ -9,8 +9,8 @@ use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::SystemTime;
 use std::{process, thread};
 
-/// Number of frames that may wait while the one after them is read ahead.
-const WAITING: usize = 1;
+/// Number of frames that are kept while the one after them is read ahead.
+const KEPT: usize = 1;
 
 /// Bytes per particle that must be left for a frame to be read ahead: those of the frame, and of what is made of the one before.
 const AHEAD: u64 = 512;
@@ -39,7 +39,7 @@ impl Ahead {
     fn start(open: Open, next: u64, particles: usize) -> Option<Self> {
         let Open { mut frames, options } = open;
         let need = AHEAD.saturating_mul(particles as u64);
-        let (sender, receiver) = sync_channel(WAITING);
+        let (sender, receiver) = sync_channel(KEPT);
         let read = move || {
             for number in next.. {
                 if memory::check(need).is_err() {
@@ -258,7 +258,7 @@ mod tests {
         }
     }
 
-    /// What is read of a frame, or the error.
+    /// The frame as text, or the error.
     fn outcome(frame: Result<ParticleFrame, FileError>) -> String {
         frame.map_or_else(|error| error.to_string(), |frame| format!("{frame:?}"))
     }

@@ -10,30 +10,30 @@ const MOST: usize = 1 << 18;
 /// Bytes between marks at first: to pass over so many takes less than a millisecond.
 const SPACING: u64 = 1 << 16;
 
-/// Where a frame begins, with what its reader knows there of earlier frames.
+/// The place where a frame begins, with what its reader knows there of earlier frames.
 #[derive(Clone)]
 pub(crate) struct Place {
     /// Offset in bytes; 0 in formats that find each frame by its number, whose first mark serves for all.
     pub(crate) offset: u64,
     /// Number of lines before it, or of frames.
     pub(crate) number: u64,
-    carried: Option<Arc<dyn Any + Send + Sync>>,
+    state: Option<Arc<dyn Any + Send + Sync>>,
 }
 
 impl Place {
     pub(crate) fn new(offset: u64, number: u64) -> Self {
-        Self { offset, number, carried: None }
+        Self { offset, number, state: None }
     }
 
     /// Returns the place with what the reader knows of earlier frames.
-    pub(crate) fn carrying<T: Any + Send + Sync>(self, carried: &Arc<T>) -> Self {
-        let carried: Arc<dyn Any + Send + Sync> = carried.clone();
-        Self { carried: Some(carried), ..self }
+    pub(crate) fn with_state<T: Any + Send + Sync>(self, state: &Arc<T>) -> Self {
+        let state: Arc<dyn Any + Send + Sync> = state.clone();
+        Self { state: Some(state), ..self }
     }
 
     /// Returns what the reader of this place knew of earlier frames.
-    pub(crate) fn carried<T: Any + Send + Sync>(&self) -> Option<Arc<T>> {
-        self.carried.clone()?.downcast().ok()
+    pub(crate) fn state<T: Any + Send + Sync>(&self) -> Option<Arc<T>> {
+        self.state.clone()?.downcast().ok()
     }
 }
 
@@ -135,8 +135,8 @@ mod tests {
 
     #[test]
     fn places_carry_what_readers_know() {
-        let place = Place::new(3, 1).carrying(&Arc::new("units"));
-        assert_eq!(place.carried::<&str>().as_deref(), Some(&"units"));
-        assert!(place.carried::<u8>().is_none() && Place::new(3, 1).carried::<&str>().is_none());
+        let place = Place::new(3, 1).with_state(&Arc::new("units"));
+        assert_eq!(place.state::<&str>().as_deref(), Some(&"units"));
+        assert!(place.state::<u8>().is_none() && Place::new(3, 1).state::<&str>().is_none());
     }
 }

@@ -36,7 +36,7 @@ pub(crate) struct Xsf {
     known: Arc<Known>,
 }
 
-/// What frames say of those after them, too.
+/// Facts that frames tell of those after them, too.
 #[derive(Clone)]
 struct Known {
     cell: Option<Cell>,
@@ -129,16 +129,11 @@ impl FrameReader for Xsf {
     }
 
     fn place(&self) -> Option<Place> {
-        Some(self.lines.place()?.carrying(&self.known))
+        Some(self.lines.place()?.with_state(&self.known))
     }
 
     fn start_at(&mut self, place: &Place) -> Result<bool, FileError> {
-        let Some(known) = place.carried() else { return Ok(false) };
-        let started = self.lines.start_at(place)?;
-        if started {
-            self.known = known;
-        }
-        Ok(started)
+        self.lines.start_with(place, &mut self.known)
     }
 }
 

@@ -38,7 +38,7 @@ pub(super) struct Shot {
     pub(super) picture: Arc<Picture>,
     /// The image with its scene, if it is finished.
     pub(super) finished: Option<Saved>,
-    /// What the page draws over it.
+    /// Marks and handles that the page draws over it.
     drawn: Value,
     /// The file of the finished image, once a page needs it.
     file: OnceLock<Option<Vec<u8>>>,

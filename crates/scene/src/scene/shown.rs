@@ -1,4 +1,4 @@
-//! What slices leave of a scene, and the extent of that.
+//! The bodies that slices leave of a scene, and their extent.
 
 use super::{BodyColumns, Scene, Slice, SliceMode};
 use glam::DVec3;

@@ -52,8 +52,8 @@ impl SeenLights {
         self.images.is_empty()
     }
 
-    /// Returns whether the camera sees a light in a pixel of these regions.
-    pub fn are_in(&self, job: &Job, (x, y): (u32, u32)) -> bool {
+    /// Returns whether the camera sees a light in the pixel of a column and a row of these regions.
+    pub fn are_in(&self, job: &Job, x: u32, y: u32) -> bool {
         self.images.iter().any(|image| image.reaches([x, y], job.filter.radius()))
     }
 

@@ -157,7 +157,7 @@ impl Batch {
                 pixels.extend(tile.pixels());
                 Vec::new()
             } else {
-                let seen: Vec<_> = tile.pixels().map(|pixel| lights.are_in(job, pixel)).collect();
+                let seen: Vec<_> = tile.pixels().map(|(x, y)| lights.are_in(job, x, y)).collect();
                 let left = tile.pixels().zip(&seen).filter(|(_, seen)| !**seen);
                 pixels.extend(left.map(|(pixel, _)| pixel));
                 seen
