@@ -20,9 +20,10 @@ LONG = """
     print("ready", flush=True)
     told = []
     def report(*facts):
-        if not told:
-            print("begun", flush=True)
         told.append(facts)
+        # The interrupt may come while this prints, and the next report is not to print again.
+        if len(told) == 1:
+            print("begun", flush=True)
     try:
         picture = spherule.render(cloud, radius=0.02, size=(800, 600), spp=100_000, progress=report, {options})
         print("picture", picture.complete, float(picture.pixels.max()) > 0, picture.samples > 0, flush=True)
