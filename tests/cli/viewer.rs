@@ -319,10 +319,15 @@ fn data_files() -> Vec<PathBuf> {
     let entries = folders.iter().flat_map(|folder| {
         std::fs::read_dir(root.join(folder)).expect("a folder of the repository")
     });
+    // A quarter of a million spheres take seconds, and others show the same.
+    let large = "paper-grid-500.toml";
     let other = ["png", "md", "awk"];
     let is_data = |path: &PathBuf| {
         let suffix = path.extension().and_then(std::ffi::OsStr::to_str).unwrap_or_default();
-        path.is_file() && !other.contains(&suffix) && !path.ends_with("make")
+        path.is_file()
+            && !other.contains(&suffix)
+            && !path.ends_with("make")
+            && !path.ends_with(large)
     };
     let mut files: Vec<PathBuf> =
         entries.map(|entry| entry.expect("an entry").path()).filter(is_data).collect();
@@ -347,7 +352,8 @@ fn the_viewer_opens_every_file_that_render_takes() {
             continue;
         }
         view(&folder, &[file], &script);
-        assert_saved_scene_renders(&folder, 1);
+        folder.succeed(&["render", "a.toml", "--quiet", "-o", "b.png"]);
+        assert!(folder.read("a.png") == folder.read("b.png"), "{file}");
         opened.push(path.file_name().map(|name| name.to_string_lossy().into_owned()));
     }
     for name in [
@@ -431,8 +437,9 @@ fn numbers_have_significant_digits_only() {
 #[test]
 fn many_spheres_are_shown_and_saved() {
     let folder = Folder::new();
-    let scene = "[[generate]]\nkind = \"volume\"\ncount = 1048600\n";
-    folder.write("many.toml", scene);
+    // So many that the viewer keeps no second copy.
+    let count = if cfg!(debug_assertions) { 65_600 } else { 1_048_600 };
+    folder.write("many.toml", &format!("[[generate]]\nkind = \"volume\"\ncount = {count}\n"));
     let script = "size 32x24\nwait 1\nclick 16,12\nsave a.png\nsave a.toml\nkey c\nwait 1\nsave c.png\n\
                   key C\nwait 1\nsave d.png\nkey a\nkey 9\nwait 1";
     let named = view(&folder, &["many.toml"], script);
@@ -441,7 +448,7 @@ fn many_spheres_are_shown_and_saved() {
     folder.succeed(&render);
     assert_eq!(Image::read(folder.path("a.png")).ok(), Image::read(folder.path("r.png")).ok());
     let rows = text(&folder.read("a.csv")).lines().count();
-    assert_eq!(rows, 1_048_601);
+    assert_eq!(rows, count + 1);
     // Another world replaces the first one, which then replaces it again.
     let read = |name: &str| Image::read(folder.path(name)).expect("a picture");
     assert_ne!(read("c.png"), read("a.png"));

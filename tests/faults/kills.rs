@@ -12,7 +12,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 /// Minimum number of kills and seconds of the test, both of which must be reached.
-const KILLS: u32 = 100;
+const KILLS: u32 = 60;
 
 /// Maximum number of kills until a render of about a second is complete.
 const MOST_KILLS: u32 = 1000;

@@ -14,12 +14,12 @@
 
 #[allow(clippy::disallowed_methods, reason = "fits of timings, which no image shows")]
 pub mod bench;
-#[allow(clippy::disallowed_methods, reason = "a baseline that is timed, not compared")]
-pub mod paper;
 mod random_scene;
 #[allow(clippy::disallowed_methods, reason = "scales of plots, which no image shows")]
 pub mod report;
 pub mod stress;
 pub mod workload;
+
+pub use spherule_paper as paper;
 
 pub use random_scene::{random_scene, random_scene_of_all_bodies};

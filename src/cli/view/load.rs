@@ -30,8 +30,9 @@ const SHORT: u64 = 1 << 26;
 /// Columns that every file has.
 const USUAL: [&str; 5] = ["x", "y", "z", "radius", "type"];
 
-/// Number of spheres from which no second copy is kept, so that they are read again if necessary.
-const MANY: usize = 1 << 20;
+/// Number of spheres from which no second copy is kept, so that they are read again if necessary. Tests, which are not optimized,
+/// reach it sooner.
+const MANY: usize = if cfg!(debug_assertions) { 1 << 16 } else { 1 << 20 };
 
 /// Time after a scene within which the next one shows that frames play: most of them are seen as previews alone, for which the tree
 /// that is built fastest is best.

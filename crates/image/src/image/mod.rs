@@ -10,7 +10,6 @@ mod channel;
 mod codecs;
 mod codes;
 pub mod compare;
-mod deflate;
 mod error;
 mod exr;
 mod format;

@@ -220,13 +220,13 @@ pub(super) fn trace_paths(
     job: &Job,
     view: View,
     regions: impl Iterator<Item = Region>,
-    streams: impl Iterator<Item = (u32, u32, Sampler)>,
+    mut streams: impl Iterator<Item = (u32, u32, Sampler)>,
     samples: Range<u32>,
     work: &mut Workspace,
 ) {
     work.view = view;
     work.begin(job, regions);
-    generate_streams(job, streams, samples, work);
+    generate_streams(job, &mut streams, samples, work);
     job.integrate(work);
     work.clock.end(Stage::Shade);
 }

@@ -20,13 +20,15 @@ pub fn generate(
     samples: Range<u32>,
     work: &mut Workspace,
 ) {
-    generate_streams(job, pixels.map(|(x, y)| (x, y, job.sampler)), samples, work);
+    generate_streams(job, &mut pixels.map(|(x, y)| (x, y, job.sampler)), samples, work);
 }
 
 /// Starts paths for streams of samples: column and row of a pixel, and the sampler of its numbers.
+///
+/// For any iterator there is one machine code, which is compiled with the other kernels.
 pub fn generate_streams(
     job: &Job,
-    streams: impl Iterator<Item = (u32, u32, Sampler)>,
+    streams: &mut dyn Iterator<Item = (u32, u32, Sampler)>,
     samples: Range<u32>,
     work: &mut Workspace,
 ) {
@@ -58,7 +60,7 @@ fn sample_thresholds(job: &Job, work: &mut Workspace, count: usize) {
 /// Starts the samples of streams, and returns their number.
 fn start(
     job: &Job,
-    streams: impl Iterator<Item = (u32, u32, Sampler)>,
+    streams: &mut dyn Iterator<Item = (u32, u32, Sampler)>,
     samples: Range<u32>,
     work: &mut Workspace,
 ) -> usize {
@@ -101,7 +103,16 @@ pub fn dither_thresholds(pixels: impl Iterator<Item = (u32, u32)>, work: &mut Wo
 /// Starts a path through the center of each of some pixels, no more than a batch, and of the lens. Camera rays end at the first
 /// body, translucent or not.
 pub fn generate_centers(job: &Job, pixels: impl Iterator<Item = (u32, u32)>, work: &mut Workspace) {
-    let count = start(job, pixels.map(|(x, y)| (x, y, job.sampler)), 0..1, work);
+    start_centers(job, &mut pixels.map(|(x, y)| (x, y, job.sampler)), work);
+}
+
+/// Starts paths through the centers of the pixels of streams.
+fn start_centers(
+    job: &Job,
+    streams: &mut dyn Iterator<Item = (u32, u32, Sampler)>,
+    work: &mut Workspace,
+) {
+    let count = start(job, streams, 0..1, work);
     work.start_paths(count);
     work.thresholds.fill(0.0);
     let middle = [F32x16::splat(0.0); 2];

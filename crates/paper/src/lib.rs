@@ -11,6 +11,9 @@
 //! other's images. Diffuse surfaces gather direct light from the lights and the environment by jittered
 //! samples; mirrors reflect. Pixels have a box filter, whatever the settings say.
 
+#![forbid(unsafe_code)]
+#![allow(clippy::disallowed_methods, reason = "a baseline that is timed, not compared")]
+
 mod hierarchy;
 mod light;
 mod random;
