@@ -17,20 +17,8 @@ fn folder() -> Folder {
 
 /// Sequences of four images, a few tenths of a second each.
 const SEQUENCES: [&[&str]; 2] = [
-    &["render", "a.xyz", "--frame", "all", "--size", "64x48", "--spp", "150", "-q", "-o", "p.png"],
-    &[
-        "render",
-        "a.xyz",
-        "--turntable",
-        "4",
-        "--size",
-        "64x48",
-        "--spp",
-        "150",
-        "-q",
-        "-o",
-        "p.png",
-    ],
+    &["render", "a.xyz", "--frame", "all", "--size", "64x48", "--spp", "90", "-q", "-o", "p.png"],
+    &["render", "a.xyz", "--turntable", "4", "--size", "64x48", "--spp", "90", "-q", "-o", "p.png"],
 ];
 
 fn pictures(folder: &Folder) -> Vec<(String, Vec<u8>)> {

@@ -33,7 +33,7 @@ use std::time::{Duration, Instant};
 
 /// Number of mutants of each target in an ordinary run, and the time limit.
 const MUTANTS: usize = 2000;
-const PATIENCE: Duration = Duration::from_secs(7);
+const PATIENCE: Duration = Duration::from_secs(4);
 
 /// Number of different faults after which a run ends.
 const FAULTS: usize = 10;

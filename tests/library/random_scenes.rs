@@ -19,7 +19,7 @@ const SAMPLES: u32 = 32;
 const TOLERANCE: f64 = 6.0;
 
 /// The scenes, by their seeds.
-const SEEDS: Range<u64> = 0..80;
+const SEEDS: Range<u64> = 0..56;
 
 /// Changes settings without changing what an image converges to. The choice of lights by power is not among them: near a
 /// large sphere it finds faint lights so rarely that their light is not in the error either.
@@ -79,7 +79,7 @@ fn means_do_not_depend_on_how_light_is_sampled() {
         let threads = [0, 1].map(|first| scope.spawn(move || -> Vec<_> { share(first) }));
         threads.into_iter().flat_map(|thread| thread.join().expect("means that agree")).collect()
     });
-    assert!(all.len() > 40, "{}", all.len());
+    assert!(all.len() > 30, "{}", all.len());
     // An error that all scenes have.
     for (way, (name, _)) in WAYS.iter().enumerate() {
         let sum: f64 = all.iter().map(|differences| differences[way]).sum();

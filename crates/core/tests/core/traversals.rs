@@ -202,7 +202,7 @@ fn every_traversal_is_exact() {
     for (name, mut spheres) in scenes() {
         let bvh = build(&mut spheres, Builder::default());
         // Not a multiple of any width.
-        let (rays, bounds) = rays(&spheres, 403);
+        let (rays, bounds) = rays(&spheres, 243);
         let tree = Tree { bvh: &bvh, spheres: &spheres };
         agree(name, &PacketWidth::ALL, tree, &rays, &bounds);
     }
@@ -214,7 +214,7 @@ fn every_tree_is_exact() {
         for builder in Builder::ALL.into_iter().filter(|&builder| builder != Builder::default()) {
             let mut spheres = spheres.clone();
             let bvh = build(&mut spheres, builder);
-            let (rays, bounds) = rays(&spheres, 211);
+            let (rays, bounds) = rays(&spheres, 107);
             let (name, tree) =
                 (format!("{name}, {builder:?}"), Tree { bvh: &bvh, spheres: &spheres });
             agree(&name, &[PacketWidth::Eight], tree, &rays, &bounds);

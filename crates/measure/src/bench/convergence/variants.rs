@@ -162,7 +162,7 @@ mod tests {
     fn variants_converge_to_the_same_image() {
         for case in cases(&quick(&[])).unwrap() {
             let scene = case.scene.resized(16);
-            let expected = Reference::new(&scene, &scene.world().unwrap(), 128, None).unwrap();
+            let expected = Reference::new(&scene, &scene.world().unwrap(), 64, None).unwrap();
             for variant in case.variants {
                 let mut other = scene.clone();
                 (variant.change)(&mut other.scene.settings, &mut Tracer::default());
@@ -170,7 +170,7 @@ mod tests {
                     continue;
                 }
                 let world = other.world().unwrap();
-                let found = Reference::new(&other, &world, 128, None).unwrap();
+                let found = Reference::new(&other, &world, 64, None).unwrap();
                 let difference = expected.squares(&found.mean).absolute;
                 let estimate = expected.error.absolute + found.error.absolute;
                 assert!(

@@ -376,7 +376,7 @@ fn long_preambles_are_skipped() {
     for (rows, format) in
         [("1 2 3 4\n5 6 7 8\n", Format::Xyzr), ("x,y,z,r\n1,2,3,4\n5,6,7,8\n", Format::Csv)]
     {
-        for lines in [2_000, 20_000, 60_000] {
+        for lines in [2_000, 60_000] {
             let content = "# a line of a long preamble of comments\n".repeat(lines) + rows;
             let frame = frame(&content);
             assert_eq!((frame.len(), frame.radius[1], frame.format), (2, 8.0, format), "{lines}");
