@@ -160,8 +160,8 @@ pub(crate) fn display_codes<'py>(
     exposure: f64,
     filmic: bool,
 ) -> PyResult<Bound<'py, PyArray3<u8>>> {
-    let transform = DisplayTransform::new(exposure, tone(filmic));
-    let transform = transform.map_err(|why| error(py, &why))?;
+    let transform = DisplayTransform::new(exposure, tone(filmic))
+        .ok_or_else(|| error(py, &ImageError::Exposure(exposure)))?;
     let pixels = pixels.as_array();
     let (height, width, _) = pixels.dim();
     let codes = py.detach(|| {

@@ -22,7 +22,7 @@ pub(super) fn decode<T: Copy + Into<usize>>(
 /// are premultiplied; the codes are not.
 pub(super) fn encode(image: &Image, alpha: Option<&[f32]>, options: &WriteOptions) -> Vec<u16> {
     match alpha {
-        None => tone::codes(&image.pixels, options).into_flattened(),
+        None => options.codes(&image.pixels).into_flattened(),
         Some(alpha) => with_alpha(image, alpha, options).into_flattened(),
     }
 }
@@ -35,6 +35,6 @@ fn with_alpha(image: &Image, alpha: &[f32], options: &WriteOptions) -> Vec<[u16;
     let colors: Vec<[f32; 3]> = image.pixels.iter().zip(alpha).map(straight).collect();
     let maximum = f32::from(options.depth.maximum());
     let alpha_code = |alpha: f32| (alpha.clamp(0.0, 1.0) * maximum).round() as u16;
-    let codes = tone::codes(&colors, options).into_iter().zip(alpha);
+    let codes = options.codes(&colors).into_iter().zip(alpha);
     codes.map(|([red, green, blue], &alpha)| [red, green, blue, alpha_code(alpha)]).collect()
 }

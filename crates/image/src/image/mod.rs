@@ -21,7 +21,6 @@ mod png;
 mod ppm;
 mod radiance;
 mod raster;
-pub mod tone;
 mod xmp;
 
 pub use self::channel::{Channel, Values};
@@ -34,6 +33,7 @@ pub(crate) use self::format::suffix;
 pub use self::metadata::Metadata;
 pub use self::options::{Depth, PpmEncoding, QUALITY, WriteOptions};
 pub use self::png::{Compression, encode_codes};
+pub use spherule_codes::tone;
 
 use crate::memory;
 

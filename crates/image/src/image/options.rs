@@ -1,7 +1,6 @@
 //! Options for writing images.
 
-use super::tone::DisplayTransform;
-use super::tone::Tone;
+use super::tone::{self, DisplayTransform, Tone};
 use super::{ImageError, Metadata};
 use std::num::NonZeroU16;
 
@@ -69,8 +68,15 @@ impl Default for WriteOptions {
 impl WriteOptions {
     /// Returns an error for values that no file can store, regardless of the format.
     pub(super) fn check(&self) -> Result<(), ImageError> {
-        DisplayTransform::new(self.exposure, self.tone)?;
+        DisplayTransform::new(self.exposure, self.tone)
+            .ok_or(ImageError::Exposure(self.exposure))?;
         self.metadata.check()
+    }
+
+    /// Returns the codes of pixels.
+    pub(super) fn codes(&self, pixels: &[[f32; 3]]) -> Vec<[u16; 3]> {
+        let transform = DisplayTransform::nearest(self.exposure, self.tone);
+        tone::codes(pixels, transform, self.depth.maximum())
     }
 }
 

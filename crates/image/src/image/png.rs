@@ -9,7 +9,7 @@ use ::png::{
     BitDepth, ColorType, Decoder, Encoder, EncodingError, Info, PixelDimensions, Reader,
     SrgbRenderingIntent, Transformations, Unit, chunk,
 };
-use spherule_png::Layout;
+use spherule_codes::png::{Layout, compress};
 use std::io::{self, Cursor};
 use std::num::NonZeroU16;
 
@@ -102,7 +102,7 @@ pub(super) fn encode(
     };
     let pixel = info.bytes_per_pixel();
     let layout = Layout { row: image.width as usize * pixel, pixel };
-    let stream = spherule_png::compress(samples, layout).map_err(|error| error.to_string())?;
+    let stream = compress(samples, layout).map_err(|error| error.to_string())?;
     let mut bytes = Vec::new();
     write(&mut bytes, info, &options.metadata, &stream).map_err(|error| error.to_string())?;
     Ok(bytes)

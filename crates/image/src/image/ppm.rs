@@ -61,7 +61,7 @@ pub(super) fn encode(image: &Image, options: &WriteOptions) -> Vec<u8> {
     let comments = options.metadata.to_lines("# ");
     let (width, height, maximum) = (image.width, image.height, options.depth.maximum());
     let header = format!("{magic}\n{comments}{width} {height}\n{maximum}\n");
-    let codes = tone::codes(&image.pixels, options);
+    let codes = options.codes(&image.pixels);
     let raster = match options.ppm {
         PpmEncoding::Plain => plain_raster(&codes),
         PpmEncoding::Binary => options.depth.pack(codes.as_flattened()),

@@ -16,7 +16,7 @@ const WINDOW: usize = 1 << 15;
 const HEADER: [u8; 2] = [0x78, 0x9c];
 
 /// Compresses data to a zlib stream.
-pub(super) fn compress(data: &[u8]) -> Result<Vec<u8>, CompressError> {
+pub(crate) fn compress(data: &[u8]) -> Result<Vec<u8>, CompressError> {
     let count = data.len().div_ceil(PART).max(1);
     let parts = (0..count).into_par_iter().map(|part| {
         let (start, end) = (part * PART, data.len().min((part + 1) * PART));

@@ -2,12 +2,11 @@
 //!
 //! Exposure scales radiance, a tone curve maps it to display-linear values in 0..=1, the sRGB curve
 //! encodes these, and codes are the nearest integers. NaN becomes code 0 and positive infinity the
-//! largest code; [`Image::count_non_finite`](super::Image::count_non_finite) counts such values.
+//! largest code.
 
-use super::{Depth, ImageError, WriteOptions};
-use crate::elementary::{exp2, pow};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use spherule_core::internals::elementary::{exp2, pow};
 use std::ops::RangeInclusive;
 
 /// Exposures in stops.
@@ -55,16 +54,9 @@ pub struct DisplayTransform {
 
 impl DisplayTransform {
     /// Creates a transform that multiplies radiance by `2^exposure` before the tone curve; `exposure`
-    /// is in stops.
-    ///
-    /// # Errors
-    /// [`ImageError::Exposure`] outside of [`EXPOSURES`].
-    pub fn new(exposure: f64, tone: Tone) -> Result<Self, ImageError> {
-        if EXPOSURES.contains(&exposure) {
-            Ok(Self { gain: exp2(exposure), tone })
-        } else {
-            Err(ImageError::Exposure(exposure))
-        }
+    /// is in stops; `None` outside of [`EXPOSURES`].
+    pub fn new(exposure: f64, tone: Tone) -> Option<Self> {
+        EXPOSURES.contains(&exposure).then(|| Self { gain: exp2(exposure), tone })
     }
 
     /// Returns the transform of the nearest exposure in range; NaN counts as 0.
@@ -136,20 +128,18 @@ impl Codes8 {
 /// Minimum number of pixels for which creating [`Codes8`] takes less time than it saves.
 const TABLE_PIXELS: usize = 1 << 13;
 
-/// Returns the codes of pixels for these options.
-pub(super) fn codes(pixels: &[[f32; 3]], options: &WriteOptions) -> Vec<[u16; 3]> {
-    let transform = DisplayTransform::nearest(options.exposure, options.tone);
+/// Returns the codes of pixels, `0..=maximum`.
+pub fn codes(pixels: &[[f32; 3]], transform: DisplayTransform, maximum: u16) -> Vec<[u16; 3]> {
     let each = pixels.par_iter().with_min_len(1 << 12);
-    if options.depth == Depth::Eight && pixels.len() >= TABLE_PIXELS {
+    if maximum == u16::from(u8::MAX) && pixels.len() >= TABLE_PIXELS {
         let table = Codes8::new(transform);
         return each.map(|pixel| pixel.map(|value| u16::from(table.code(value)))).collect();
     }
-    let maximum = options.depth.maximum();
     each.map(|pixel| pixel.map(|value| transform.code(value, maximum))).collect()
 }
 
 /// Returns the linear value of every code in `0..=maximum`; `maximum` is 1 or more.
-pub(super) fn decode_table(maximum: u16) -> Vec<f32> {
+pub fn decode_table(maximum: u16) -> Vec<f32> {
     (0..=maximum).map(|code| srgb_decode(f64::from(code) / f64::from(maximum)) as f32).collect()
 }
 
@@ -233,7 +223,7 @@ mod tests {
     fn values_out_of_range_are_clamped() {
         for tone in [Tone::Linear, Tone::Filmic] {
             for exposure in [f64::NAN, f64::INFINITY, -3000.0, -100.1, 100.1] {
-                assert!(DisplayTransform::new(exposure, tone).is_err(), "{exposure}");
+                assert!(DisplayTransform::new(exposure, tone).is_none(), "{exposure}");
                 assert_eq!(DisplayTransform::nearest(exposure, tone).code(0.0, 255), 0);
             }
             for exposure in [-100.0, -3.0, 0.0, 5.0, 100.0] {

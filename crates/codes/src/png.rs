@@ -1,13 +1,7 @@
 //! The data of PNG images: rows of samples, filtered and compressed by all threads.
-//!
-//! It is apart from all else that is known of images so that builds for tests optimize it, and little else of them.
 
-#![forbid(unsafe_code)]
-
-mod deflate;
-
-pub use flate2::CompressError;
-
+use crate::deflate;
+use flate2::CompressError;
 use rayon::prelude::*;
 
 /// Numbers of bytes in samples.
