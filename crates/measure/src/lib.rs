@@ -2,7 +2,6 @@
 //!
 //! - [`mod@bench`]: benchmarks of `spherule bench`, each with a [`report::Report`].
 //! - [`stress`]: intersection tests compared with exact arithmetic in numerically hard cases.
-//! - [`paper`]: the recursive ray tracer of "Optimizing Ray Tracing", as a baseline.
 //! - [`workload`]: spheres and rays for measurements of traversal.
 //! - [`random_scene()`]: scenes for comparisons, as files.
 //! - [`report`]: tables and plots, and their conversion to files.
@@ -19,7 +18,5 @@ mod random_scene;
 pub mod report;
 pub mod stress;
 pub mod workload;
-
-pub use spherule_paper as paper;
 
 pub use random_scene::{random_scene, random_scene_of_all_bodies};

@@ -1,7 +1,7 @@
 //! Errors of measurements.
 
-use crate::paper::Unsupported;
 use crate::workload::WorkloadError;
+use spherule_paper::Unsupported;
 use spherule_render::image::ImageError;
 use spherule_render::render::RenderError;
 use spherule_render::scene::FileError;

@@ -5,9 +5,9 @@
 use super::rounds::{Times, clock};
 use super::scenes::NamedScene;
 use super::{BenchError, Options, Progress};
-use crate::paper::{PaperTracer, Threading};
 use crate::report::{Axis, Column, Plot, Point, Report, Series, Spread, Style, Table};
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use spherule_paper::{PaperTracer, Threading};
 use spherule_render::image::{Image, compare};
 use spherule_render::render::{self, render};
 use spherule_render::scene::{Integrator, Roulette, Settings};

@@ -7,6 +7,7 @@
 mod chance;
 mod exact;
 mod features;
+mod pixel_features;
 mod probes;
 mod saved;
 mod sums;
@@ -16,6 +17,7 @@ pub use chance::{ChanceLight, ChanceVariance, Term};
 pub use exact::ExactSums;
 pub use features::SAMPLES;
 pub use features::{FeatureSums, MeanFeatures, SampleSet, TileFeatures};
+pub use pixel_features::{Features, GROUND_PLANE, NOTHING};
 pub use probes::{Density, Pilot, ProbePair, Probes, Reading, Role};
 pub use saved::TileHeader;
 pub use sums::Sums;

@@ -3,8 +3,8 @@
 use crate::bench::BenchError;
 use crate::bench::rounds::{Times, clock};
 use crate::bench::threads::pool;
-use crate::paper::{PaperTracer, Threading};
 use crate::report::{Cell, Column, Style};
+use spherule_paper::{PaperTracer, Threading};
 use spherule_render::image::{Comparison, Image, compare};
 use spherule_render::render::{self, render};
 use spherule_render::scene::{Scene, Settings};

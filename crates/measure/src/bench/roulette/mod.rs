@@ -8,9 +8,9 @@ mod report;
 
 use super::paper::{PaperScene, Program};
 use super::{BenchError, Effort, Options, Progress};
-use crate::paper::Threading;
 use crate::report::Report;
 use experiment::{Experiment, Outcome};
+use spherule_paper::Threading;
 use spherule_render::scene::Roulette;
 
 const EXPLANATION: &str = "The paper's roulette continues a path at each bounce with a fixed \

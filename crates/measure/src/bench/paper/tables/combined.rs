@@ -4,8 +4,8 @@ use super::super::comparison::{Agreement, Entry, Program, SceneSetup, time_entri
 use super::super::scenes::{FULL, PaperScene};
 use super::{Plan, ratio, time};
 use crate::bench::BenchError;
-use crate::paper::Threading;
 use crate::report::{Cell, Column, Style, Table};
+use spherule_paper::Threading;
 use spherule_render::scene::{Roulette, Settings};
 
 /// Bounds of the growth with four times as many pixels within which times are extrapolated.

@@ -4,8 +4,8 @@ use super::super::comparison::{Agreement, Entry, Program, SceneSetup, time_entri
 use super::super::scenes::PaperScene;
 use super::{Plan, ratio, time};
 use crate::bench::BenchError;
-use crate::paper::Threading;
 use crate::report::{Column, Style, Table};
+use spherule_paper::Threading;
 use spherule_render::scene::{Roulette, Settings};
 
 /// The paper's probabilities of surviving a bounce; the first is no roulette.

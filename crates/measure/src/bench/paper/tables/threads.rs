@@ -6,8 +6,8 @@ use super::{Plan, ratio, time};
 use crate::bench::BenchError;
 use crate::bench::rounds::Times;
 use crate::bench::threads::pool;
-use crate::paper::Threading;
 use crate::report::{Axis, Column, Plot, Point, Series, Table};
+use spherule_paper::Threading;
 
 const PROGRAMS: [(Program, &str); 3] = [
     (Program::Paper(Threading::Critical), "paper, critical sections"),

@@ -1,24 +1,24 @@
 //! Weighted linear regression in square windows: a row of lanes is a row of pixels.
 
-use super::columns::Columns;
-use super::observations::{FEATURES, ID, IRRADIANCE, Observed, WEIGHT};
-use crate::lanes::Lanes;
+use crate::columns::Columns;
+use crate::observations::{FEATURES, ID, IRRADIANCE, Observed, WEIGHT};
+use spherule_transport::lanes::Lanes;
 
 /// Number of regressors: a constant, the normal and the coverage.
 const REGRESSORS: usize = 1 + FEATURES;
 
 /// Radii of the windows of pixels.
-pub(super) const RADII: [usize; 2] = [1, 2];
+pub(crate) const RADII: [usize; 2] = [1, 2];
 
 /// Edge of the squares of pixels of which the widest window consists, and its radius in squares.
-pub(super) const SQUARE: usize = 3;
-pub(super) const SQUARES_RADIUS: usize = 3;
+pub(crate) const SQUARE: usize = 3;
+pub(crate) const SQUARES_RADIUS: usize = 3;
 
 /// Distance from a pixel to the middle of the outermost squares.
-pub(super) const REACH: usize = SQUARE * SQUARES_RADIUS;
+pub(crate) const REACH: usize = SQUARE * SQUARES_RADIUS;
 
 /// Number of windows: those of pixels, and the one of squares.
-pub(super) const WINDOWS: usize = RADII.len() + 1;
+pub(crate) const WINDOWS: usize = RADII.len() + 1;
 
 /// Weight of a neighbor of another sphere.
 const OTHER_SPHERE: f32 = 0.5;
@@ -28,18 +28,18 @@ const RIDGE: f32 = 1e-3;
 
 /// The prediction of a window for the pixel in its middle.
 #[derive(Clone, Copy)]
-pub(super) struct Prediction<L> {
+pub(crate) struct Prediction<L> {
     /// Irradiance, by channel.
-    pub(super) irradiance: [L; 3],
+    pub(crate) irradiance: [L; 3],
     /// Derivative of the prediction by the pixel's own irradiance, which is the weight of its own noise.
-    pub(super) leverage: L,
+    pub(crate) leverage: L,
 }
 
 /// Number of observations in the largest window.
 const LARGEST: usize = pixels(SQUARES_RADIUS);
 
 /// Offsets of a window's pixels, from the middle outward.
-pub(super) static OFFSETS: [[isize; 2]; LARGEST] = {
+pub(crate) static OFFSETS: [[isize; 2]; LARGEST] = {
     let mut offsets = [[0; 2]; LARGEST];
     let (mut count, mut radius) = (0, 0);
     while count < LARGEST {
@@ -60,7 +60,7 @@ pub(super) static OFFSETS: [[isize; 2]; LARGEST] = {
 
 /// Fits the windows of pixels around those of row `y` from `x` on, one in each lane.
 #[inline(always)]
-pub(super) fn predict<L: Lanes>(
+pub(crate) fn predict<L: Lanes>(
     columns: &Columns,
     y: usize,
     x: usize,
@@ -78,7 +78,7 @@ pub(super) fn predict<L: Lanes>(
 
 /// Fits the window of squares, which must be known, around the pixels of row `y` from `x` on, one in each lane.
 #[inline(always)]
-pub(super) fn predict_by_squares<L: Lanes>(columns: &Columns, y: usize, x: usize) -> Prediction<L> {
+pub(crate) fn predict_by_squares<L: Lanes>(columns: &Columns, y: usize, x: usize) -> Prediction<L> {
     const RADIUS: usize = SQUARES_RADIUS;
     let squares: [_; 2 * RADIUS + 1] =
         std::array::from_fn(|row| columns.squares.row(y + row * SQUARE - REACH));
@@ -181,7 +181,7 @@ impl<const WINDOWS: usize, L: Lanes> Fitted<WINDOWS, L> {
 }
 
 /// Returns the number of pixels of a window.
-pub(super) const fn pixels(radius: usize) -> usize {
+pub(crate) const fn pixels(radius: usize) -> usize {
     (2 * radius + 1).pow(2)
 }
 

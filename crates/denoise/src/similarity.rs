@@ -5,12 +5,12 @@
 //! Morel, "A Non-Local Algorithm for Image Denoising", CVPR 2005; with the variance of each pixel as in Rousselle, Knaus
 //! and Zwicker, "Adaptive Rendering with Non-Local Means Filtering", TOG 2012).
 
-use super::box_sums::BoxSums;
-use super::columns::KEPT;
-use super::observations::{COLUMNS, INSIDE, MEAN, MEAN_VARIANCE};
-use super::regression::{OFFSETS, RADII, pixels};
-use super::rows::{Row, Rows, STRIDE};
-use crate::lanes::Lanes;
+use crate::box_sums::BoxSums;
+use crate::columns::KEPT;
+use crate::observations::{COLUMNS, INSIDE, MEAN, MEAN_VARIANCE};
+use crate::regression::{OFFSETS, RADII, pixels};
+use crate::rows::{Row, Rows, STRIDE};
+use spherule_transport::lanes::Lanes;
 
 /// Edge of the squares that are compared.
 const PATCH: usize = 5;
@@ -36,7 +36,7 @@ const RADIUS: usize = RADII[RADII.len() - 1];
 
 /// Similarities of the pixels of a tile, and its margins, to their neighbors, from 0 to 1.
 #[derive(Debug, Default)]
-pub(super) struct Similarities {
+pub(crate) struct Similarities {
     /// For each pixel, that to the neighbor below or on the right; by pairs of opposite offsets.
     pairs: Rows<PAIRS, { RADIUS + 1 }>,
     boxes: BoxSums<PAIRS, PATCH>,
@@ -46,7 +46,7 @@ pub(super) struct Similarities {
 
 /// Similarities of the pixels of a row to their neighbors.
 #[derive(Clone, Copy)]
-pub(super) struct Similar<'a>([&'a Row<PAIRS>; RADIUS + 1]);
+pub(crate) struct Similar<'a>([&'a Row<PAIRS>; RADIUS + 1]);
 
 /// For each neighbor of [`OFFSETS`], the index of its pair, and the sign of its offset beside the pair's.
 static PAIR_OF: [(usize, bool); NEIGHBORS] = {
@@ -88,13 +88,13 @@ fn forward_offsets() -> impl Iterator<Item = [isize; 2]> {
 
 impl Similarities {
     /// Forgets all rows, for another tile.
-    pub(super) fn begin(&mut self) {
+    pub(crate) fn begin(&mut self) {
         self.next = 0;
         self.boxes.begin();
     }
 
     /// Compares the pixels of row `y` with their neighbors. Rows up to that of the last neighbor's square must be known.
-    pub(super) fn measure(&mut self, y: usize, pixels: &Rows<COLUMNS, KEPT>) {
+    pub(crate) fn measure(&mut self, y: usize, pixels: &Rows<COLUMNS, KEPT>) {
         for row in self.next.max(y - RADIUS)..=y {
             let compare = |row: usize, excess: &mut Row<PAIRS>| {
                 for (excess, [dx, dy]) in excess.iter_mut().zip(forward_offsets()) {
@@ -113,7 +113,7 @@ impl Similarities {
 
     /// Returns those of row `y`, which must be the last that was measured.
     #[inline(always)]
-    pub(super) fn around(&self, y: usize) -> Similar<'_> {
+    pub(crate) fn around(&self, y: usize) -> Similar<'_> {
         Similar(std::array::from_fn(|row| self.pairs.row(y + row - RADIUS)))
     }
 }
@@ -122,7 +122,7 @@ impl Similar<'_> {
     /// Returns the similarities of the pixels from `x` on, one in each lane, to the neighbor at an offset, whose index in
     /// [`OFFSETS`] this is.
     #[inline(always)]
-    pub(super) fn load<L: Lanes>(self, index: usize, x: usize, [dx, dy]: [isize; 2]) -> L {
+    pub(crate) fn load<L: Lanes>(self, index: usize, x: usize, [dx, dy]: [isize; 2]) -> L {
         if index == 0 {
             return L::splat(1.0);
         }

@@ -1,16 +1,15 @@
 //! Denoising of a tile: predictions, their errors, and the choice among them.
 
-use super::box_sums::BoxSums;
-use super::columns::Columns;
-use super::observations::{ALBEDO, COLUMNS, DEVIATIONS, IRRADIANCE, VARIANCE, WEIGHT, load};
-use super::regression::{
+use crate::Input;
+use crate::box_sums::BoxSums;
+use crate::columns::Columns;
+use crate::observations::{ALBEDO, COLUMNS, DEVIATIONS, IRRADIANCE, VARIANCE, WEIGHT, load};
+use crate::regression::{
     Prediction, RADII, REACH, SQUARE, SQUARES_RADIUS, WINDOWS, pixels, predict, predict_by_squares,
 };
-use super::rows::{MARGIN, Row, Rows, STRIDE, TILE};
-use crate::film::Region;
-use crate::image::Image;
-use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask};
-use crate::layers::Features;
+use crate::rows::{MARGIN, Row, Rows, STRIDE, TILE};
+use spherule_transport::film::Region;
+use spherule_transport::lanes::{F32x16, Lanes, MAX_LANES, Mask};
 
 /// Edges of the squares over which errors are averaged before the choice, and choices after it.
 const ERROR_EDGE: usize = 7;
@@ -40,16 +39,6 @@ const KEPT_NOISE: [f32; CHOICES] = [
     1.0 / (SQUARE * SQUARE * pixels(SQUARES_RADIUS)) as f32,
 ];
 
-/// The image that is denoised.
-pub(super) struct Input<'a> {
-    pub(super) image: &'a Image,
-    /// Variance of each pixel's mean.
-    pub(super) variance: &'a Image,
-    pub(super) features: &'a [Features],
-    /// Mean square of the radiance.
-    pub(super) floor: f32,
-}
-
 /// Columns of predictions: irradiance by each window, and the square that relative errors are relative to.
 const SCALE: usize = 3 * WINDOWS;
 const PREDICTED: usize = SCALE + 1;
@@ -62,7 +51,7 @@ const KEPT: usize = 8;
 
 /// Columns of a tile and its margins, from row to row.
 #[derive(Debug, Default)]
-pub(super) struct Workspace {
+pub(crate) struct Workspace {
     columns: Columns,
     predictions: Rows<PREDICTED, KEPT>,
     errors: BoxSums<ERRORS, ERROR_EDGE>,
@@ -73,7 +62,7 @@ pub(super) struct Workspace {
 }
 
 /// Returns the tiles of an image.
-pub(super) fn tiles(width: u32, height: u32) -> impl Iterator<Item = Region> {
+pub(crate) fn tiles(width: u32, height: u32) -> impl Iterator<Item = Region> {
     let steps = |count: u32, size: u32| {
         (0..count).step_by(size as usize).map(move |from| (from, size.min(count - from)))
     };
@@ -86,7 +75,7 @@ impl Workspace {
     /// Returns radiance and squared error of a tile's pixels, row by row.
     // Profiles shall name it.
     #[inline(never)]
-    pub(super) fn denoise(&mut self, input: &Input, tile: Region) -> Vec<([f32; 3], f32)> {
+    pub(crate) fn denoise(&mut self, input: &Input, tile: Region) -> Vec<([f32; 3], f32)> {
         let Self { columns, predictions, errors, chosen, shares } = self;
         columns.begin();
         errors.begin();

@@ -1,21 +1,21 @@
 //! Columns of a tile's pixels and of those around it, for the regression.
 
-use super::box_sums::BoxSums;
-use super::observations::{
+use crate::Input;
+use crate::box_sums::BoxSums;
+use crate::observations::{
     ALBEDO, COLUMNS, COVERAGE, DEVIATION, DEVIATIONS, FEATURES, ID, INSIDE, IRRADIANCE, MEAN,
     MEAN_VARIANCE, OBSERVED, VARIANCE, WEIGHT,
 };
-use super::regression::{REACH, SQUARE};
-use super::rows::{MARGIN, Row, Rows, STRIDE};
-use super::similarity::Similarities;
-use super::tile::Input;
-use crate::film::Region;
-use crate::lanes::{F32x16, Lanes, MAX_LANES};
+use crate::regression::{REACH, SQUARE};
+use crate::rows::{MARGIN, Row, Rows, STRIDE};
+use crate::similarity::Similarities;
+use spherule_transport::film::Region;
+use spherule_transport::lanes::{F32x16, Lanes, MAX_LANES};
 use std::ops::Range;
 
 /// Number of rows that are kept: those between the first whose squares a prediction needs and the last whose deviation the
 /// weights of such squares need.
-pub(super) const KEPT: usize = 32;
+pub(crate) const KEPT: usize = 32;
 
 /// Least albedo that radiance is divided by: darker surfaces reflect too little light for a ratio.
 const MIN_ALBEDO: f32 = 0.02;
@@ -29,12 +29,12 @@ const DEVIATION_EDGE: usize = 7;
 
 /// Pixels of a tile and its margins, from row to row. Pixels outside of the image have no weight.
 #[derive(Debug, Default)]
-pub(super) struct Columns {
-    pub(super) pixels: Rows<COLUMNS, KEPT>,
+pub(crate) struct Columns {
+    pub(crate) pixels: Rows<COLUMNS, KEPT>,
     /// Means over the squares of [`SQUARE`] pixels around each pixel, and the sphere in the middle; where there is noise.
-    pub(super) squares: Rows<OBSERVED, KEPT>,
+    pub(crate) squares: Rows<OBSERVED, KEPT>,
     /// Similarities of pixels to their neighbors, where there is noise.
-    pub(super) similarities: Similarities,
+    pub(crate) similarities: Similarities,
     /// The row after the last whose weights are known.
     weighed: usize,
     /// The row after the last whose squares are known.
@@ -45,7 +45,7 @@ pub(super) struct Columns {
 
 impl Columns {
     /// Forgets all rows, for another tile.
-    pub(super) fn begin(&mut self) {
+    pub(crate) fn begin(&mut self) {
         self.weighed = 0;
         self.averaged = 0;
         self.around.begin();
@@ -54,7 +54,7 @@ impl Columns {
     }
 
     /// Makes known what the predictions of row `y` need.
-    pub(super) fn advance(&mut self, input: &Input, tile: Region, y: usize) {
+    pub(crate) fn advance(&mut self, input: &Input, tile: Region, y: usize) {
         let reach = REACH + SQUARE / 2;
         let end = y + reach + 1;
         for row in self.weighed.max(y - reach)..end {

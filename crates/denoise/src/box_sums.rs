@@ -1,10 +1,10 @@
 //! Sums over the squares around the pixels of a tile: first along rows, then across those that are kept.
 
-use super::rows::{Row, Rows, STRIDE};
+use crate::rows::{Row, Rows, STRIDE};
 
 /// Sums over squares of `EDGE` pixels, which is odd, of rows that are asked for from top to bottom.
 #[derive(Debug)]
-pub(super) struct BoxSums<const COLUMNS: usize, const EDGE: usize> {
+pub(crate) struct BoxSums<const COLUMNS: usize, const EDGE: usize> {
     /// Values of a row.
     values: Box<Row<COLUMNS>>,
     /// Sums along the last rows.
@@ -18,13 +18,13 @@ impl<const COLUMNS: usize, const EDGE: usize> BoxSums<COLUMNS, EDGE> {
     const RADIUS: usize = EDGE / 2;
 
     /// Forgets all rows, for another tile.
-    pub(super) fn begin(&mut self) {
+    pub(crate) fn begin(&mut self) {
         self.next = 0;
     }
 
     /// Computes the sums around the pixels of row `y`, which is not before that of the last call. `values` writes the rows
     /// that are needed and not known. Sums are 0 nearer than the radius to the left and the right.
-    pub(super) fn add(
+    pub(crate) fn add(
         &mut self,
         y: usize,
         mut values: impl FnMut(usize, &mut Row<COLUMNS>),
