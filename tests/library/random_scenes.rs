@@ -116,7 +116,7 @@ fn options() -> [Options<'static>; 12] {
 #[test]
 fn bytes_do_not_depend_on_how_images_are_rendered() {
     let (usual, mut compared) = (Options::default(), 0);
-    for seed in 0..100 {
+    for seed in 0..60 {
         let text = random_scene_of_all_bodies(seed);
         let scene = Scene::parse(&text, "random", Path::new(".")).expect("a scene");
         // Slices may have removed all that the camera is to frame.
@@ -153,5 +153,5 @@ fn bytes_do_not_depend_on_how_images_are_rendered() {
             assert_eq!(pixels, &whole.pixels[first..first + 7], "scene {seed}: a region");
         }
     }
-    assert!(compared > 90, "{compared}");
+    assert!(compared > 54, "{compared}");
 }
