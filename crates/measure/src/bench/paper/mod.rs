@@ -2,7 +2,7 @@
 //!
 //! The paper, "Optimizing Ray Tracing", measures the effect of three optimizations. So do the tables
 //! here, in the same order: Russian roulette, threads, the acceleration structure. A last table
-//! combines them. [`crate::paper`] reimplements the paper's program.
+//! combines them. [`spherule_paper`] reimplements the paper's program.
 
 mod comparison;
 mod scenes;
