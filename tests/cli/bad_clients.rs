@@ -223,3 +223,13 @@ fn the_page_survives_bad_clients() {
     );
     assert!(after <= before + GROWTH, "{told}");
 }
+
+#[test]
+fn silent_connections_make_room_for_others() {
+    let folder = Folder::new();
+    folder.write("pair.xyz", "2\n\nNa 0 0 0\nCl 3 0 0\n");
+    let server = Server::start(&folder, &["pair.xyz", "--radii", "1", "--spp", "1"]);
+    let silent: Vec<_> = (0..CROWD).map(|_| TcpStream::connect(server.host())).collect();
+    assert!(silent.iter().all(Result::is_ok));
+    assert!(server.try_get().is_some(), "the page does not answer");
+}

@@ -1,12 +1,13 @@
 //! The server of the page: connections, the page's files, and its WebSocket.
 
 use super::client::{Client, Ear, send};
-use super::http::{Door, Status, accept_socket, read_head, reply};
+use super::http::{Door, Head, Status, accept_socket, read_head, reply};
+use std::collections::VecDeque;
 use std::io;
-use std::net::{TcpListener, TcpStream};
-use std::sync::Arc;
+use std::net::{Shutdown, TcpListener, TcpStream};
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::mpsc::SyncSender;
+use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::Duration;
 use tungstenite::protocol::{Message, Role, WebSocket, WebSocketConfig};
@@ -46,6 +47,30 @@ impl Drop for Seat {
     }
 }
 
+/// Connections that have not said what they want, the oldest first: they make room for others.
+#[derive(Default)]
+struct Silent(Mutex<VecDeque<(u64, TcpStream)>>);
+
+impl Silent {
+    fn enter(&self, number: u64, stream: &TcpStream) {
+        if let (Ok(mut silent), Ok(stream)) = (self.0.lock(), stream.try_clone()) {
+            silent.push_back((number, stream));
+        }
+    }
+
+    fn leave(&self, number: u64) {
+        if let Ok(mut silent) = self.0.lock() {
+            silent.retain(|(own, _)| *own != number);
+        }
+    }
+
+    /// Ends the oldest connection; returns false if there is none.
+    fn end_oldest(&self) -> bool {
+        let oldest = self.0.lock().ok().and_then(|mut silent| silent.pop_front());
+        oldest.is_some_and(|(_, stream)| stream.shutdown(Shutdown::Both).is_ok())
+    }
+}
+
 /// Accepts connections for ever.
 pub(super) fn serve<T: From<Call> + Send + 'static>(
     listener: &TcpListener,
@@ -53,21 +78,26 @@ pub(super) fn serve<T: From<Call> + Send + 'static>(
     calls: &SyncSender<T>,
 ) {
     let (seats, next) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicU64::new(0)));
-    for stream in listener.incoming() {
+    let silent = Arc::new(Silent::default());
+    for (number, stream) in (0..).zip(listener.incoming()) {
         let Ok(stream) = stream else {
             // Too many open files, perhaps: others may close.
             thread::sleep(Duration::from_millis(100));
             continue;
         };
         let seat = Seat(Arc::clone(&seats));
-        if seats.fetch_add(1, Ordering::Relaxed) >= MOST {
+        if seats.fetch_add(1, Ordering::Relaxed) >= MOST && !silent.end_oldest() {
             continue;
         }
+        silent.enter(number, &stream);
         let (door, calls, next) = (Arc::clone(door), calls.clone(), Arc::clone(&next));
+        let silent = Arc::clone(&silent);
         let answer = move || {
-            let _seat = seat;
+            let (_seat, mut stream) = (seat, stream);
+            let head = read_head(&mut stream);
+            silent.leave(number);
             // A connection that is lost ends here.
-            let _ = answer(stream, &door, &calls, &next);
+            let _ = answer(stream, head, &door, &calls, &next);
         };
         // Without a thread the connection is closed.
         let _ = thread::Builder::new().spawn(answer);
@@ -76,12 +106,13 @@ pub(super) fn serve<T: From<Call> + Send + 'static>(
 
 fn answer<T: From<Call>>(
     mut stream: TcpStream,
+    head: Result<Head, Status>,
     door: &Door,
     calls: &SyncSender<T>,
     next: &AtomicU64,
 ) -> io::Result<()> {
     stream.set_write_timeout(Some(Duration::from_secs(10)))?;
-    let head = match read_head(&mut stream) {
+    let head = match head {
         Ok(head) => head,
         Err(status) => return reply(&mut stream, status, "text/plain", b""),
     };

@@ -8,6 +8,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Command, CommandFactory, FromArgMatches};
 use spherule_render::scene::Anchor;
 use spherule_render::suggest;
+use std::borrow::Cow;
 use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 
@@ -168,10 +169,21 @@ impl Options {
     /// Returns the command that renders with these options, as one types it.
     pub(super) fn command_line(&self) -> String {
         let own = Self { file: self.name().map(OsStr::to_owned), ..self.clone() };
-        let words = own.words().into_iter().map(|word| word.to_string_lossy().into_owned());
-        let line = ["spherule".to_owned(), "render".to_owned()].into_iter();
-        let line: Vec<String> = line.chain(words).collect();
-        shlex::try_join(line.iter().map(String::as_str)).unwrap_or_else(|_| line.join(" "))
+        let words = own.words().into_iter().map(|word| quoted(&word.to_string_lossy()));
+        ["spherule".to_owned(), "render".to_owned()]
+            .into_iter()
+            .chain(words)
+            .collect::<Vec<_>>()
+            .join(" ")
+    }
+}
+
+/// Returns a word as one types it; of an option only its value is quoted, where it must be.
+fn quoted(word: &str) -> String {
+    let quote = |text: &str| shlex::try_quote(text).map_or(text.to_owned(), Cow::into_owned);
+    match word.split_once('=') {
+        Some((name, value)) if name.starts_with("--") => format!("{name}={}", quote(value)),
+        _ => quote(word),
     }
 }
 
@@ -240,7 +252,9 @@ mod tests {
         options.set("cell", []).unwrap();
         options.set("legend", [None]).unwrap();
         options.put("output", "a b.png");
+        options.put("size", "64x48");
         let line = options.command_line();
+        assert!(line.ends_with(" --output='a b.png' --size=64x48"), "{line}");
         let words = shlex::split(&line).unwrap();
         let expected = [
             "spherule",
@@ -251,6 +265,7 @@ mod tests {
             "--style=O: opacity=0.5",
             "--legend",
             "--output=a b.png",
+            "--size=64x48",
         ];
         assert_eq!(words, expected);
     }
