@@ -123,6 +123,12 @@ impl Client {
         self.change(|outbox| outbox.state = Some(state));
     }
 
+    /// Sends the state after some commands, with their mark. A state that waits is older.
+    pub(super) fn mark(&self, text: String) {
+        self.change(|outbox| outbox.state = None);
+        self.reply(Reply::Text(text));
+    }
+
     /// Sends an image, instead of one that waits.
     pub(super) fn show(&self, shot: Arc<Shot>) {
         self.change(|outbox| outbox.shot = Some(shot));
@@ -325,4 +331,25 @@ fn framed(header: &str, files: &[&[u8]]) -> Vec<u8> {
         message.extend_from_slice(file);
     }
     message
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_older_state_follows_a_mark() {
+        let client = Client::default();
+        client.state("before".into());
+        client.mark("after".into());
+        client.state("later".into());
+        let texts = [(); 2].map(|()| match client.next() {
+            Some(Parcel::Reply(Reply::Text(text))) => text,
+            _ => String::new(),
+        });
+        assert_eq!(texts, ["after", "later"]);
+        client.mark("last".into());
+        client.close();
+        assert!(client.next().is_none());
+    }
 }

@@ -324,7 +324,9 @@ impl Host {
     fn tell_marks(&mut self) {
         if self.selecting == 0 {
             for (number, mark) in std::mem::take(&mut self.marks) {
-                self.tell(number, &json!({ "state": self.facts(), "mark": mark }).to_string());
+                if let Some((_, client)) = self.clients.iter().find(|(own, _)| *own == number) {
+                    client.mark(json!({ "state": self.facts(), "mark": mark }).to_string());
+                }
             }
         }
     }
