@@ -4,17 +4,17 @@ use crate::deflate;
 use flate2::CompressError;
 use rayon::prelude::*;
 
-/// Numbers of bytes in samples.
+/// The layout of samples.
 #[derive(Clone, Copy, Debug)]
 pub struct Layout {
-    /// Of a row of pixels.
+    /// Bytes of a row of pixels.
     pub row: usize,
-    /// Of a pixel.
+    /// Bytes of a pixel.
     pub pixel: usize,
 }
 
-/// Filters and compresses rows of samples of 8 bits, or of 16 with the high byte first. Returns the content of the file's `IDAT` chunks, a zlib stream,
-/// which is the same for any number of threads. Samples after the last whole row are left out.
+/// Filters and compresses rows of samples of 8 bits, or of 16 with the high byte first. Returns the content of the file's
+/// `IDAT` chunks, a zlib stream, which is the same for any number of threads. Samples after the last whole row are left out.
 ///
 /// # Errors
 /// Those of the compressor, which has none for what this gives it.

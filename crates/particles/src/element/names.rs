@@ -33,7 +33,7 @@ const IONS: [(&str, &str); 8] = [
 
 /// Atom types of `AutoDock` that are no symbols of their elements (`AD4.1_bound.dat`): acceptors of hydrogen bonds, aromatic
 /// carbon, hydrogens of donors, carbons where rings are closed, and water.
-const AUTODOCK: [(&str, &str); 14] = [
+const PDBQT_TYPES: [(&str, &str); 14] = [
     ("A", "C"),
     ("CG", "C"),
     ("G", "C"),
@@ -99,7 +99,7 @@ pub(in super::super) fn of_aligned_name(aligned: &str, residue: &str) -> Option<
 /// numbered, as in `CG0`.
 pub(in super::super) fn of_autodock_type(name: &str) -> Option<Element> {
     let name = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
-    let own = AUTODOCK.iter().find(|(own, _)| own.eq_ignore_ascii_case(name));
+    let own = PDBQT_TYPES.iter().find(|(own, _)| own.eq_ignore_ascii_case(name));
     Element::from_symbol(own.map_or(name, |(_, symbol)| symbol))
 }
 
